@@ -11,6 +11,7 @@
 
 #include "core/base/printable.hpp"
 #include "core/io/input_file.hpp"
+#include "core/io/row_text.hpp"
 
 namespace fusebench::io {
 
@@ -152,6 +153,7 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields) 
     if (!rest.empty() && rest.front() == ',') {
       rest.remove_prefix(1);
       while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+      if (rest.empty() && !fields.back().empty()) return;
     }
   }
 }
@@ -160,6 +162,8 @@ TextTable::TextTable(std::filesystem::path file, std::string_view columns, std::
     : file_(std::move(file)), stream_(std::move(stream)) {
   std::vector<std::string_view> names;
   split_fields(columns, names);
+  more_columns_ = !names.empty() && names.back() == "...";
+  if (more_columns_) names.pop_back();
   needed_columns_ = names.size();
   for (std::string_view name : names) {
     if (name.starts_with('[')) {
@@ -188,7 +192,34 @@ tl::unexpected<Error> TextTable::fail_here(std::string_view what, std::string hi
               std::move(hint));
 }
 
+bool TextTable::has_expected_columns() const {
+  const std::size_t columns = fields_.size();
+  if (!more_columns_) return columns == columns_.size() || columns == needed_columns_;
+  if (text_.find('\r') != std::string_view::npos) return false;  // several rows in one line
+  return row_columns_ == 0 ? columns >= needed_columns_ : columns == row_columns_;
+}
+
+std::string TextTable::hint_about_row() const {
+  if (text_.find('\r') != std::string_view::npos) return "lines must end with a line feed";
+  if (has_decimal_commas(text_)) return std::string(kDecimalCommaHint);
+  if (text_.find(';') != std::string_view::npos)
+    return "columns are separated by blanks or commas: replace the semicolons";
+  if (line_ == first_row_line_ && is_line_of_names(fields_))
+    return fmt::format("is line {} a line of names? Put # before it", line_);
+  return {};
+}
+
+tl::unexpected<Error> TextTable::fail_in(std::size_t column, const Error& error) const {
+  const std::string hint = hint_about_row();
+  return fail_here(fmt::format("{}: {}", columns_[column], error.message), hint.empty() ? error.hint : hint);
+}
+
 std::string TextTable::expectation() const {
+  if (more_columns_ && row_columns_ == 0)
+    return fmt::format("{} columns or more: {}", columns_.size(), fmt::join(columns_, " "));
+  if (more_columns_ && row_columns_ > columns_.size())
+    return fmt::format("{} columns as in line {}: {} ...", row_columns_, first_row_line_,
+                       fmt::join(columns_, " "));
   if (needed_columns_ < columns_.size()) {
     return fmt::format("{} or {} columns: {}", needed_columns_, columns_.size(), fmt::join(columns_, " "));
   }
@@ -222,27 +253,25 @@ Result<bool> TextTable::next() {
     if (text_.find('\0') != std::string_view::npos) {
       return fail_here("not a text file (zero byte)", "tables are UTF-8 or ASCII text");
     }
-    if (text_.empty() || text_.front() == '#') continue;
+    if (text_.empty() || text_.front() == '#' || line_ == left_out_line_) continue;
     split_fields(text_, fields_);
-    if (fields_.size() != columns_.size() && fields_.size() != needed_columns_) {
-      return fail_here(fmt::format("expected {}, got {}", expectation(), fields_.size()),
-                       text_.find('\r') == text_.npos ? "" : "lines must end with a line feed");
-    }
+    if (first_row_line_ == 0) first_row_line_ = line_;
+    if (!has_expected_columns())
+      return fail_here(fmt::format("expected {}, got {}", expectation(), fields_.size()), hint_about_row());
+    row_columns_ = fields_.size();
     return true;
   }
 }
 
 Result<std::int64_t> TextTable::time_ns(std::size_t column, TimeUnit unit) const {
   const Result<std::int64_t> value = parse_time_ns(text(column), unit);
-  if (!value)
-    return fail_here(fmt::format("{}: {}", columns_[column], value.error().message), value.error().hint);
+  if (!value) return fail_in(column, value.error());
   return value;
 }
 
 Result<double> TextTable::number(std::size_t column) const {
   const Result<double> value = parse_number(text(column));
-  if (!value)
-    return fail_here(fmt::format("{}: {}", columns_[column], value.error().message), value.error().hint);
+  if (!value) return fail_in(column, value.error());
   return value;
 }
 

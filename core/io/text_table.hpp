@@ -29,18 +29,24 @@ enum class TimeUnit { nanoseconds = 0, microseconds = 3, milliseconds = 6, secon
 [[nodiscard]] Result<double> parse_number(std::string_view text);
 
 /// Splits at white space and commas: white space with at most one comma in it is one separator, so "1, 2" has
-/// two fields and "1,,2" three. White space at the ends does not count.
+/// two fields and "1,,2" three. White space at the ends does not count, nor does one comma after the last
+/// value: "1,2," has two fields, and "1,," three.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 /// Reads one table row by row; only one line is in memory. A byte order mark, carriage returns, blank lines
-/// and comments (first character '#') are skipped. Every row must have exactly the named columns; the last
-/// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"), and a row may then do without all of these.
+/// and comments (first character '#') are skipped. Every row must have exactly the named columns. The last
+/// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"): a row may then do without all of these.
+/// After
+/// "..." as the last name ("timestamp tx ty tz ...") rows may have more columns, all rows as many.
 class TextTable {
  public:
   static constexpr std::size_t kMaxLineLength = 1 << 16;  ///< characters; a longer line is not a table
 
   /// columns: names, separated by blanks ("timestamp filename"). Errors: data_missing.
   [[nodiscard]] static Result<TextTable> open(const std::filesystem::path& file, std::string_view columns);
+
+  /// A line that is no row, such as names of the columns without '#' before them. Counts from 1.
+  void leave_out_line(int line) { left_out_line_ = line; }
 
   /// Moves to the next row; false at the end of the file. Errors: data_corrupt (number of columns, a line
   /// that is too long, bytes that are not text).
@@ -49,6 +55,7 @@ class TextTable {
   /// Of the current row. Columns count from 0. Errors: data_corrupt.
   [[nodiscard]] int line() const { return line_; }
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
+  [[nodiscard]] std::size_t size() const { return fields_.size(); }  ///< number of columns
   [[nodiscard]] bool has(std::size_t column) const { return column < fields_.size(); }
   [[nodiscard]] bool has_commas() const { return text_.find(',') != std::string_view::npos; }
   [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column, TimeUnit unit = TimeUnit::seconds) const;
@@ -62,11 +69,18 @@ class TextTable {
  private:
   TextTable(std::filesystem::path file, std::string_view columns, std::ifstream stream);
   [[nodiscard]] Result<bool> read_line();
+  [[nodiscard]] bool has_expected_columns() const;
   [[nodiscard]] std::string expectation() const;
+  [[nodiscard]] std::string hint_about_row() const;
+  [[nodiscard]] tl::unexpected<Error> fail_in(std::size_t column, const Error& error) const;
 
   std::filesystem::path file_;
   std::vector<std::string> columns_;
   std::size_t needed_columns_ = 0;
+  bool more_columns_ = false;    ///< rows may have more than the named ones
+  std::size_t row_columns_ = 0;  ///< of the first row
+  int first_row_line_ = 0;
+  int left_out_line_ = 0;
   std::ifstream stream_;
   std::string buffer_;
   std::string_view text_;  ///< the current line within buffer_

@@ -5,6 +5,9 @@
 #include <iterator>
 #include <utility>
 
+#include "core/trajectory/pose_head.hpp"
+#include "core/trajectory/pose_table.hpp"
+
 namespace fusebench::trajectory {
 
 namespace {
@@ -34,18 +37,14 @@ std::string tum_text(const Trajectory& trajectory) {
 }
 
 Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                       Duplicates duplicates, io::TimeUnit unit) {
-  TrajectoryRows rows;
-  const Result<void> done = io::for_each_stamped_row(
-      file, "timestamp tx ty tz qx qy qz qw", order_for(duplicates),
-      [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-        Eigen::Matrix<double, 7, 1> v;
-        if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
-        return take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
-      },
-      unit);
-  if (!done) return tl::unexpected(done.error());
-  return ordered(std::move(rows), duplicates, file, warnings);
+                                       Duplicates duplicates) {
+  const auto head = read_pose_head(file);
+  if (!head) return tl::unexpected(head.error());
+  PoseLayout layout = layout_of(*head, {}, file, warnings);
+  layout.unit = stamp_unit_of(*head, layout.columns, {}, file, warnings);
+  auto rows = read_pose_rows(file, layout, order_for(duplicates), warnings);
+  if (!rows) return tl::unexpected(rows.error());
+  return ordered(std::move(*rows), duplicates, file, warnings);
 }
 
 }  // namespace fusebench::trajectory

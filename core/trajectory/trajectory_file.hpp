@@ -8,7 +8,6 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_rows.hpp"
 
 namespace fusebench::trajectory {
@@ -20,13 +19,16 @@ namespace fusebench::trajectory {
 /// quaternion >= 0.
 [[nodiscard]] std::string tum_text(const Trajectory& trajectory);
 
-/// Reads TUM text, whose stamps count in `unit` (blank lines, # comments and commas as in TextTable).
-/// Quaternions are normalised; rows are ordered as ordered() does, with its warnings. Errors name file:line:
-/// data_missing, or data_corrupt for a row that is not eight finite numbers, a quaternion near zero, the
-/// order in time (see Duplicates), or a file without rows.
+/// Reads TUM text (blank lines, # comments and commas as in TextTable). A line of names before the rows says
+/// which columns are which, and in which unit stamps count (pose_head.hpp); else these are the first eight,
+/// and the unit is by the size of the first stamp. Rows of lost frames are left out (pose_table.hpp).
+/// Quaternions are normalised; rows are ordered as ordered() does. Warnings say what was not used or guessed.
+///
+/// Errors name file:line: data_missing, or data_corrupt for a row that is no stamp with seven finite numbers,
+/// a quaternion near zero, the order in time (see Duplicates), or a file without poses; those of
+/// read_pose_head().
 [[nodiscard]] Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file,
                                                      std::vector<std::string>& warnings,
-                                                     Duplicates duplicates = Duplicates::error,
-                                                     io::TimeUnit unit = io::TimeUnit::seconds);
+                                                     Duplicates duplicates = Duplicates::error);
 
 }  // namespace fusebench::trajectory

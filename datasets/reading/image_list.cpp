@@ -9,6 +9,31 @@
 
 namespace fusebench::reading {
 
+namespace {
+
+constexpr std::string_view kListColumns = "timestamp filename";
+
+/// Adds the image of each row to `listed`.
+io::StampedRow listing_of(const std::filesystem::path& list, const std::filesystem::path& images,
+                          std::vector<ListedImage>& listed) {
+  return [list, images, &listed](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    if (auto inside = check_stays_inside(table, table.text(1), images); !inside) return inside;
+    const std::filesystem::path file = images / table.text(1);
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(),
+                              printable(table.text(1), 200)),
+                  fmt::format("unpack the whole recording; names are relative to {}",
+                              images == list.parent_path() ? "the list's folder" : images.string()));
+    }
+    listed.push_back({time_ns, file});
+    return {};
+  };
+}
+
+}  // namespace
+
 Result<void> check_stays_inside(const io::TextTable& table, const std::filesystem::path& name,
                                 const std::filesystem::path& recording) {
   namespace fs = std::filesystem;
@@ -24,28 +49,19 @@ Result<void> check_stays_inside(const io::TextTable& table, const std::filesyste
 Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
                                                  const std::filesystem::path& images, io::TimeUnit unit) {
   std::vector<ListedImage> listed;
-  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    if (auto inside = check_stays_inside(table, table.text(1), images); !inside) return inside;
-    const std::filesystem::path file = images / table.text(1);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
-      return fail(ErrorCode::data_missing,
-                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(),
-                              printable(table.text(1), 200)),
-                  fmt::format("unpack the whole recording; names are relative to {}",
-                              images == list.parent_path() ? "the list's folder" : images.string()));
-    }
-    listed.push_back({time_ns, file});
-    return {};
-  };
-  const Result<void> done =
-      io::for_each_stamped_row(list, "timestamp filename", io::TimeOrder::increasing, row, unit);
+  const Result<void> done = io::for_each_stamped_row(list, kListColumns, io::TimeOrder::increasing,
+                                                     listing_of(list, images, listed), unit);
   if (!done) return tl::unexpected(done.error());
   return listed;
 }
 
-Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list) {
-  return read_image_list(list, list.parent_path());
+Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
+                                                 std::vector<std::string>& warnings) {
+  std::vector<ListedImage> listed;
+  const Result<void> done = io::for_each_stamped_row(list, kListColumns, io::TimeOrder::increasing,
+                                                     listing_of(list, list.parent_path(), listed), warnings);
+  if (!done) return tl::unexpected(done.error());
+  return listed;
 }
 
 }  // namespace fusebench::reading

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -25,9 +26,11 @@ struct ListedImage {
 /// data_missing (the list or an image), data_corrupt (a row, the order in time, an empty list).
 [[nodiscard]] Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
                                                                const std::filesystem::path& images,
-                                                               io::TimeUnit unit = io::TimeUnit::seconds);
+                                                               io::TimeUnit unit);
 
-/// The same, in seconds, with names relative to the list's folder.
-[[nodiscard]] Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list);
+/// The same with names relative to the list's folder, in seconds. Stamps that can only be milli-, micro- or
+/// nanoseconds since 1970 (io::unit_by_size()) are read as such, with a warning.
+[[nodiscard]] Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
+                                                               std::vector<std::string>& warnings);
 
 }  // namespace fusebench::reading

@@ -111,8 +111,8 @@ std::string to_text(const trajectory_error::PoseConsistency& c, const Consistenc
   const trajectory_error::PartConsistency& o = c.orientation;
   const trajectory_error::PartConsistency& p = c.position;
   const metrics::NeesBounds bounds = metrics::nees_bounds_95(1, 3);
-  std::string text =
-      "normalised estimation error squared\n\n" + text::aligned_columns(heading(c, question)) + "\n";
+  std::string text = formats_line(question.files) + "normalised estimation error squared\n\n" +
+                     text::aligned_columns(heading(c, question)) + "\n";
   text += text::aligned_columns(
       {{"", "orientation", "position"},
        {"NEES / 3 mean", number(o.nees.mean), number(p.nees.mean)},
@@ -132,9 +132,13 @@ std::string to_json(const trajectory_error::PoseConsistency& c, const Consistenc
   const ComparedFiles& files = question.files;
   Json json = {{"metric", "nees"},
                {"reference",
-                {{"file", files.reference}, {"format", trajectory_files::to_string(files.reference_format)}}},
+                {{"file", files.reference},
+                 {"format", trajectory_files::to_string(files.reference_format)},
+                 {"format_source", files.reference_format_source}}},
                {"estimate",
-                {{"file", files.estimate}, {"format", trajectory_files::to_string(files.estimate_format)}}},
+                {{"file", files.estimate},
+                 {"format", trajectory_files::to_string(files.estimate_format)},
+                 {"format_source", files.estimate_format_source}}},
                {"pairs", c.pairs},
                {"possible", c.possible},
                {"coverage", coverage_of(c)},

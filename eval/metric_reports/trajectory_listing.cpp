@@ -124,10 +124,26 @@ std::string checks_block(const ListedTrajectory& trajectory) {
   return block("checks", std::move(checks)) + block("stats", std::move(stats));
 }
 
+/// "formats: a tum (by its columns), b euroc (names in line 1)"; without names if all have the same.
+std::string formats_line_of(const std::vector<ListedTrajectory>& trajectories) {
+  const auto format_of = [](const ListedTrajectory& trajectory) {
+    return fmt::format("{} ({})", trajectory.format, trajectory.format_source);
+  };
+  const auto differs = [&](const ListedTrajectory& trajectory) {
+    return format_of(trajectory) != format_of(trajectories.front());
+  };
+  if (std::ranges::none_of(trajectories, differs))
+    return fmt::format("formats: {}\n", format_of(trajectories.front()));
+  std::string line;
+  for (const ListedTrajectory& trajectory : trajectories)
+    line += fmt::format("{} {} {}", line.empty() ? "formats:" : ",", trajectory.name, format_of(trajectory));
+  return line + "\n";
+}
+
 }  // namespace
 
 std::string to_text(const std::vector<ListedTrajectory>& trajectories, ListingDetail detail) {
-  std::string text;
+  std::string text = formats_line_of(trajectories);
   for (const ListedTrajectory& trajectory : trajectories) {
     text += fmt::format("{:-<80}\nname:\t{}\n", "", trajectory.name);
     text += detail == ListingDetail::line ? line_of(trajectory) : infos_block(trajectory);
@@ -169,6 +185,8 @@ std::string to_json(const std::vector<ListedTrajectory>& trajectories) {
     const Vector3d& first = poses.front().T_world_camera.translation;
     const Vector3d& last = poses.back().T_world_camera.translation;
     nlohmann::ordered_json row = {{"name", trajectory.name},
+                                  {"format", trajectory.format},
+                                  {"format_source", trajectory.format_source},
                                   {"poses", poses.size()},
                                   {"path_m", path_m(poses)},
                                   {"duration_s", nullptr},

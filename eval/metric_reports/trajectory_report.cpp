@@ -195,11 +195,18 @@ Json motions_json(const trajectory_error::TrajectoryRequest& request) {
 
 }  // namespace
 
+std::string formats_line(const ComparedFiles& files) {
+  return fmt::format("formats: reference {} ({}), estimate {} ({})\n",
+                     trajectory_files::to_string(files.reference_format), files.reference_format_source,
+                     trajectory_files::to_string(files.estimate_format), files.estimate_format_source);
+}
+
 std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files,
                     const std::optional<reference_clock::ReferenceClock>& clock) {
-  std::string text = evaluation.request.metric == trajectory_error::TrajectoryMetric::ate
-                         ? "absolute trajectory error\n\n"
-                         : "relative pose error\n\n";
+  std::string text = formats_line(files);
+  text += evaluation.request.metric == trajectory_error::TrajectoryMetric::ate
+              ? "absolute trajectory error\n\n"
+              : "relative pose error\n\n";
   text += text::aligned_columns(heading(evaluation, files));
   text += '\n';
   if (!evaluation.segments.empty()) text += segments_text(evaluation) + "\nall segments:\n";
@@ -217,10 +224,12 @@ std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, co
                {"reference",
                 {{"file", files.reference},
                  {"format", trajectory_files::to_string(files.reference_format)},
+                 {"format_source", files.reference_format_source},
                  {"poses", evaluation.reference_poses}}},
                {"estimate",
                 {{"file", files.estimate},
                  {"format", trajectory_files::to_string(files.estimate_format)},
+                 {"format_source", files.estimate_format_source},
                  {"poses", evaluation.estimate_poses}}},
                {"relation", first.relation},
                {"unit", first.unit},

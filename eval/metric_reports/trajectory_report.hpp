@@ -16,10 +16,15 @@ struct ComparedFiles {
   trajectory_files::TrajectoryFormat reference_format = trajectory_files::TrajectoryFormat::tum;
   std::string estimate;
   trajectory_files::TrajectoryFormat estimate_format = trajectory_files::TrajectoryFormat::tum;
+  std::string reference_format_source = {};  ///< see LoadedTrajectory::format_source
+  std::string estimate_format_source = {};
 };
 
-/// The protocol and all that the numbers depend on, then the statistics; segments as a table. Ends with the
-/// clock of the reference where it was fitted.
+/// "formats: reference tum (by its columns), estimate euroc (names in line 1)", with a line feed.
+[[nodiscard]] std::string formats_line(const ComparedFiles& files);
+
+/// The formats, the protocol and all that the numbers depend on, then the statistics; segments as a table.
+/// Ends with the clock of the reference where it was fitted.
 [[nodiscard]] std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation,
                                   const ComparedFiles& files,
                                   const std::optional<reference_clock::ReferenceClock>& clock = std::nullopt);

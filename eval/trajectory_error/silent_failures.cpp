@@ -6,6 +6,7 @@
 
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory.hpp"
+#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -33,7 +34,7 @@ std::vector<KnownPose> known_poses(const Trajectory& ground_truth, const Traject
 std::vector<JudgedPose> judged_poses(const Trajectory& ground_truth, const Trajectory& estimate,
                                      const SilentFailureLimits& limits) {
   const std::vector<KnownPose> known = known_poses(ground_truth, estimate);
-  const auto interval_ns = static_cast<std::int64_t>(std::llround(1e9 * limits.interval_s));
+  const auto interval_ns = trajectory_files::nanoseconds(limits.interval_s);
   std::vector<JudgedPose> judged;
   std::size_t before = 0;
   for (std::size_t now = 1; now < known.size(); ++now) {

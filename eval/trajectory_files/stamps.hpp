@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/base/types.hpp"
@@ -17,7 +18,12 @@ namespace fusebench::trajectory_files {
   return stamps;
 }
 
+/// Limited to half the range of the result, as stamps are; 0 of NaN.
 [[nodiscard]] inline std::int64_t nanoseconds(double seconds) {
+  constexpr std::int64_t kMost_ns = std::numeric_limits<std::int64_t>::max() / 2;
+  constexpr double kMost_s = 4.6e9;
+  if (std::isnan(seconds)) return 0;
+  if (std::abs(seconds) > kMost_s) return seconds < 0 ? -kMost_ns : kMost_ns;
   return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }
 

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
-#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/trajectory/pose_head.hpp"
+#include "core/trajectory/pose_table.hpp"
+#include "eval/trajectory_files/format_recognition.hpp"
 #include "eval/trajectory_files/log_trajectory.hpp"
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
@@ -24,91 +25,22 @@ constexpr std::array kNames{
     std::pair{TrajectoryFormat::tum, "tum"}, std::pair{TrajectoryFormat::kitti, "kitti"},
     std::pair{TrajectoryFormat::euroc, "euroc"}, std::pair{TrajectoryFormat::log, "log"},
     std::pair{TrajectoryFormat::openvins, "openvins"}};
-constexpr std::size_t kTumColumns = 8;
-constexpr std::size_t kKittiColumns = 12;
-constexpr std::size_t kEurocColumns = 17;
-constexpr std::size_t kLogHeader = 3;
-constexpr std::size_t kOpenvinsColumns = 20;
-
 constexpr std::array kUnits{
     std::pair{io::TimeUnit::seconds, "s"}, std::pair{io::TimeUnit::milliseconds, "ms"},
     std::pair{io::TimeUnit::microseconds, "us"}, std::pair{io::TimeUnit::nanoseconds, "ns"}};
 
-/// What a first row says of its file.
-struct FirstRow {
-  int line = 0;
-  std::size_t columns = 0;
-  bool commas = false;
-  std::string stamp;
-};
-
-/// Of eight columns, an integer of nanoseconds before a comma is EuRoC's.
-Result<TrajectoryFormat> format_of(const FirstRow& row, const std::filesystem::path& file) {
-  if (row.columns == kKittiColumns) return TrajectoryFormat::kitti;
-  if (row.columns == kEurocColumns) return TrajectoryFormat::euroc;
-  if (row.columns == kOpenvinsColumns) return TrajectoryFormat::openvins;
-  if (row.columns == kLogHeader) return TrajectoryFormat::log;
-  constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
-  const bool integer = row.stamp.find_first_not_of("0123456789") == std::string::npos;
-  if (row.columns == kTumColumns)
-    return row.commas && integer && row.stamp.size() >= kNanosecondDigits ? TrajectoryFormat::euroc
-                                                                          : TrajectoryFormat::tum;
-  return fail(ErrorCode::data_corrupt,
-              fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, log 3, "
-                          "openvins 20)",
-                          file.string(), row.line, row.columns),
-              "`--format` names the format if the first row does not");
-}
-
-/// The unit that a stamp since 1970 can only be in: 1e11 s are in the year 5138, 1e11 ms in 1973.
-io::TimeUnit unit_of(const std::string& stamp) {
-  const Result<double> value = io::parse_number(stamp);
-  constexpr double kMostSeconds = 1e11;
-  if (!value || *value < kMostSeconds) return io::TimeUnit::seconds;
-  if (*value < 1e3 * kMostSeconds) return io::TimeUnit::milliseconds;
-  return *value < 1e6 * kMostSeconds ? io::TimeUnit::microseconds : io::TimeUnit::nanoseconds;
-}
-
-Result<FirstRow> first_row(const std::filesystem::path& file) {
+/// What cannot be read as text, or has no rows, is reported by the readers of rows.
+Result<void> check_can_be_opened(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
     return fail(
         ErrorCode::data_missing, fmt::format("{}: a folder, where a trajectory is needed", file.string()),
         "of a run it is trajectory.tum, and truth.tum beside it; of a recording mostly groundtruth.txt");
   }
-  std::ifstream stream = io::input_file(file);
-  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
-  std::string line;
-  std::vector<std::string_view> fields;
-  for (int number = 1; io::next_line(stream, line); ++number) {
-    std::string_view text = line;
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    fields.clear();
-    io::split_fields(text, fields);
-    if (fields.empty() || fields[0].starts_with('#')) continue;
-    return FirstRow{number, fields.size(), text.find(',') != std::string_view::npos, std::string(fields[0])};
-  }
-  return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
-}
-
-Result<Trajectory> read_euroc(const std::filesystem::path& file, trajectory::Duplicates duplicates,
-                              std::vector<std::string>& warnings) {
-  trajectory::TrajectoryRows rows;
-  const Result<void> done = io::for_each_stamped_row(
-      file, "timestamp px py pz qw qx qy qz [vx vy vz wx wy wz ax ay az]", trajectory::order_for(duplicates),
-      [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-        // TUM text has as many columns, but w last: read as these it gives poses like any others.
-        if (!table.has_commas())
-          return table.fail_here("no commas between the numbers, so that this is no ground truth of EuRoC",
-                                 "a timestamp in seconds, tx ty tz, qx qy qz qw between blanks is TUM text: "
-                                 "say tum in place of euroc");
-        Eigen::Matrix<double, 7, 1> v;
-        if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
-        return trajectory::take_pose(table, time_ns, v.head<3>(), Quaterniond(v[3], v[4], v[5], v[6]), rows);
-      },
-      io::TimeUnit::nanoseconds);
-  if (!done) return tl::unexpected(done.error());
-  return trajectory::ordered(std::move(rows), duplicates, file, warnings);
+  const bool regular = std::filesystem::is_regular_file(file, ignored);
+  if (!std::filesystem::exists(file, ignored) || (regular && !io::input_file(file)))
+    return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
+  return {};
 }
 
 /// From the six numbers of an upper triangle, row by row.
@@ -118,34 +50,62 @@ Matrix3d symmetric(const double* upper) {
   return matrix;
 }
 
-Result<LoadedTrajectory> read_openvins(const std::filesystem::path& file, io::TimeUnit unit,
-                                       std::vector<std::string>& warnings) {
-  trajectory::TrajectoryRows rows;
+/// The covariances of the current row of an openvins table.
+Result<PoseCovariance> covariance_of(const io::TextTable& table) {
+  constexpr std::size_t kFirst = 8;
+  std::array<double, 12> v{};
+  if (auto read = table.numbers(kFirst, v); !read) return tl::unexpected(read.error());
+  PoseCovariance covariance{symmetric(v.data()), symmetric(v.data() + 6)};
+  if (covariance.orientation_rad2.diagonal().minCoeff() < 0 ||
+      covariance.position_m2.diagonal().minCoeff() < 0) {
+    return table.fail_here("a variance is below zero",
+                           "columns 9, 12 and 14 are variances of the orientation, 15, 18 and 20 of the "
+                           "position");
+  }
+  return covariance;
+}
+
+/// Of tum, euroc and openvins.
+Result<LoadedTrajectory> read_table(const std::filesystem::path& file, const RecognisedFormat& recognised,
+                                    const TrajectoryReading& reading, std::vector<std::string>& warnings) {
   LoadedTrajectory loaded;
-  loaded.format = TrajectoryFormat::openvins;
-  const Result<void> done = io::for_each_stamped_row(
-      file, "timestamp tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 Pt12 Pt13 Pt22 Pt23 Pt33",
-      io::TimeOrder::increasing,
-      [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-        Eigen::Matrix<double, kOpenvinsColumns - 1, 1> v;
-        if (auto read = table.numbers(1, {v.data(), kOpenvinsColumns - 1}); !read) return read;
-        const PoseCovariance covariance{symmetric(&v[7]), symmetric(&v[13])};
-        if (covariance.orientation_rad2.diagonal().minCoeff() < 0 ||
-            covariance.position_m2.diagonal().minCoeff() < 0) {
-          return table.fail_here(
-              "a variance is below zero",
-              "columns 9, 12 and 14 are variances of the orientation, 15, 18 and 20 of the "
-              "position");
-        }
-        loaded.covariances.push_back(covariance);
-        return trajectory::take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
-      },
-      unit);
-  if (!done) return tl::unexpected(done.error());
-  auto poses = trajectory::ordered(std::move(rows), trajectory::Duplicates::error, file, warnings);
+  loaded.format = recognised.format;
+  const bool has_covariances = loaded.format == TrajectoryFormat::openvins;
+  const auto duplicates = has_covariances ? trajectory::Duplicates::error : reading.duplicates;
+  const auto take_covariance = [&](const io::TextTable& table) -> Result<void> {
+    auto covariance = covariance_of(table);
+    if (!covariance) return tl::unexpected(covariance.error());
+    loaded.covariances.push_back(*covariance);
+    return {};
+  };
+  const auto check_commas = [&](const io::TextTable& table) -> Result<void> {
+    if (table.has_commas()) return {};
+    return table.fail_here("no commas between the numbers, as other rows have them");
+  };
+  const trajectory::PoseRow row = has_covariances           ? trajectory::PoseRow(take_covariance)
+                                  : recognised.needs_commas ? trajectory::PoseRow(check_commas)
+                                                            : trajectory::PoseRow();
+  auto rows =
+      trajectory::read_pose_rows(file, recognised.layout, trajectory::order_for(duplicates), warnings, row);
+  if (!rows) return tl::unexpected(rows.error());
+  auto poses = trajectory::ordered(std::move(*rows), duplicates, file, warnings);
   if (!poses) return tl::unexpected(poses.error());
   loaded.poses = std::move(*poses);
   return loaded;
+}
+
+constexpr std::size_t kUpperPart = 12;  // numbers of the upper 3x4 of a pose
+
+/// Of a row with a whole 4x4 pose, as Replica's traj.txt.
+Result<void> check_last_row(const io::TextTable& table) {
+  if (!table.has(kUpperPart)) return {};
+  constexpr double kTolerance = 1e-6;
+  Eigen::RowVector4d last;
+  if (auto read = table.numbers(kUpperPart, {last.data(), 4}); !read) return read;
+  if ((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kTolerance) return {};
+  return table.fail_here(fmt::format("the last row of the pose is {:g} {:g} {:g} {:g} (expected 0 0 0 1)",
+                                     last[0], last[1], last[2], last[3]),
+                         "a row is a pose as 3x4 or 4x4 numbers, row by row");
 }
 
 Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std::string>& warnings) {
@@ -155,9 +115,11 @@ Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std
   double largest = 0;
   int largest_line = 0;
   const Result<void> done = io::for_each_row(
-      file, "r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz", [&](const io::TextTable& table) -> Result<void> {
+      file, "r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz [m41 m42 m43 m44]",
+      [&](const io::TextTable& table) -> Result<void> {
+        if (auto last = check_last_row(table); !last) return last;
         Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
-        if (auto read = table.numbers(0, {T.data(), kKittiColumns}); !read) return read;
+        if (auto read = table.numbers(0, {T.data(), kUpperPart}); !read) return read;
         const NearestRotation rotation = nearest_rotation(T.leftCols<3>());
         if (!(rotation.deviation < kNoRotation)) {
           return table.fail_here(
@@ -218,34 +180,24 @@ std::string kitti_text(const Trajectory& trajectory) {
 
 Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file, const TrajectoryReading& reading,
                                          std::vector<std::string>& warnings) {
-  TrajectoryFormat format = reading.format.value_or(TrajectoryFormat::tum);
-  io::TimeUnit unit = reading.stamp_unit.value_or(io::TimeUnit::seconds);
-  std::error_code ignored;
-  const bool once = std::filesystem::exists(file, ignored) &&
-                    !std::filesystem::is_regular_file(file, ignored) &&
-                    !std::filesystem::is_directory(file, ignored);
-  if (!once && !(reading.format && reading.stamp_unit)) {
-    const Result<FirstRow> row = first_row(file);
-    if (!row) return tl::unexpected(row.error());
-    if (!reading.format) {
-      const Result<TrajectoryFormat> found = format_of(*row, file);
-      if (!found) return tl::unexpected(found.error());
-      format = *found;
-    }
-    const bool counts = format == TrajectoryFormat::tum || format == TrajectoryFormat::openvins;
-    if (counts && !reading.stamp_unit) unit = unit_of(row->stamp);
-    if (counts && !reading.stamp_unit && unit != io::TimeUnit::seconds)
-      warnings.push_back(fmt::format("{}:{}: stamps are read as {}, by their size", file.string(), row->line,
-                                     io::to_string(unit)));
-  }
-  if (format == TrajectoryFormat::openvins) return read_openvins(file, unit, warnings);
-  Result<Trajectory> poses = format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
-                             : format == TrajectoryFormat::log ? read_log_trajectory(file, warnings)
-                             : format == TrajectoryFormat::euroc
-                                 ? read_euroc(file, reading.duplicates, warnings)
-                                 : trajectory::read_tum_trajectory(file, warnings, reading.duplicates, unit);
-  if (!poses) return tl::unexpected(poses.error());
-  return LoadedTrajectory{format, std::move(*poses), {}};
+  if (auto openable = check_can_be_opened(file); !openable) return tl::unexpected(openable.error());
+  const auto head = trajectory::read_pose_head(file);
+  if (!head) return tl::unexpected(head.error());
+  auto recognised = recognise_format(*head, reading, file, warnings);
+  if (!recognised) return tl::unexpected(recognised.error());
+  const auto loaded = [&](Result<Trajectory> poses) -> Result<LoadedTrajectory> {
+    if (!poses) return tl::unexpected(poses.error());
+    return LoadedTrajectory{recognised->format, std::move(*poses), {}, recognised->source};
+  };
+  if (recognised->format == TrajectoryFormat::kitti) return loaded(read_kitti(file, warnings));
+  if (recognised->format == TrajectoryFormat::log) return loaded(read_log_trajectory(file, warnings));
+  trajectory::GivenUnit unit{reading.stamp_unit, reading.unit_of_this_file, {}};
+  if (recognised->format == TrajectoryFormat::euroc) unit.usual = io::TimeUnit::nanoseconds;
+  recognised->layout.unit =
+      trajectory::stamp_unit_of(*head, recognised->layout.columns, unit, file, warnings);
+  auto table = read_table(file, *recognised, reading, warnings);
+  if (table) table->format_source = recognised->source;
+  return table;
 }
 
 }  // namespace fusebench::trajectory_files

@@ -15,9 +15,9 @@
 namespace fusebench::trajectory_files {
 
 enum class TrajectoryFormat {
-  tum,       ///< "timestamp tx ty tz qx qy qz qw", seconds and metres
-  kitti,     ///< the upper 3x4 of a pose, row by row; no stamps, poses go by their number
-  euroc,     ///< "timestamp[ns],px,py,pz,qw,qx,qy,qz", with or without velocity and biases (data.csv)
+  tum,       ///< "timestamp tx ty tz qx qy qz qw" and more columns, seconds and metres
+  kitti,     ///< the upper 3x4 of a pose, or all 4x4, row by row; no stamps, poses go by their number
+  euroc,     ///< "timestamp[ns],px,py,pz,qw,qx,qy,qz" and more columns, such as velocity and biases
   log,       ///< Redwood's and Open3D's: the number of a frame, then its 4x4 pose (log_trajectory.hpp)
   openvins,  ///< tum, then the upper triangles of the covariances of orientation and position (ov_eval)
 };
@@ -35,6 +35,7 @@ struct LoadedTrajectory {
   TrajectoryFormat format = TrajectoryFormat::tum;
   Trajectory poses;  ///< without stamps, the number of a pose is its stamp in nanoseconds
   std::vector<PoseCovariance> covariances = {};  ///< one a pose with openvins; else none
+  std::string format_source = {};                ///< "names in line 1", "as given", "by its columns"
   [[nodiscard]] bool has_stamps() const { return format != TrajectoryFormat::kitti && !has_numbers(); }
   /// Each pose says the number of its frame.
   [[nodiscard]] bool has_numbers() const { return format == TrajectoryFormat::log; }
@@ -49,18 +50,25 @@ struct LoadedTrajectory {
 /// How a file is read; what is not given is recognised.
 struct TrajectoryReading {
   std::optional<TrajectoryFormat> format = {};
-  std::optional<io::TimeUnit> stamp_unit = {};  ///< of tum and openvins; euroc counts nanoseconds
+  std::optional<io::TimeUnit> stamp_unit = {};
   trajectory::Duplicates duplicates = trajectory::Duplicates::rare_last;
+  bool tum_without_commas = false;  ///< with euroc: rows without commas are recognised, as TUM text is
+  bool unit_of_this_file = false;   ///< stamp_unit is not of several files, of which some may be in seconds
 };
 
-/// Reads a trajectory. Without a format, the first row's columns tell it; what cannot be read twice (a pipe)
-/// is taken for TUM text in seconds. Stamps that can only be milli-, micro- or nanoseconds since 1970 (the
-/// first one is above 1e11, 1e14 or 1e17) are read as such, with a warning. Rotations are made unit and
-/// orthonormal; warnings say how far off they were, and what ordered() did.
+/// Reads a trajectory. A line of names before the rows, with or without '#', says which columns are which and
+/// in which unit stamps count (trajectory::read_pose_head()). Without one the format is the given one, else
+/// that of the first rows' columns. The unit of
+/// stamps is the named one, else the given one, else that of the format (euroc: nanoseconds), else by the
+/// size of the first stamp (trajectory::stamp_unit_of()). Rows of lost frames are left out
+/// (trajectory::read_pose_rows()); so are their covariances. Rotations are made unit and orthonormal.
+/// Warnings say what contradicts, what was guessed, left out and not used, how far off rotations were, and
+/// what ordered() did.
 ///
 /// Errors name file:line: data_missing; data_corrupt for a row that is no pose, a matrix that is no rotation
-/// to a hundredth, a row of euroc without commas, those of ordered(), columns that fit no format, or
-/// (openvins) time that does not increase or a variance below zero.
+/// to a hundredth or whose last row is not 0 0 0 1, a row of euroc without commas, those of ordered() and
+/// read_pose_head(), columns that fit no format, or (openvins) time that does not increase or a variance
+/// below zero.
 [[nodiscard]] Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
                                                        const TrajectoryReading& reading,
                                                        std::vector<std::string>& warnings);

@@ -151,8 +151,8 @@ Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajecto
             stamp_seconds(estimate.back().timestamp_ns), reference.size(),
             stamp_seconds(reference.front().timestamp_ns), stamp_seconds(reference.back().timestamp_ns),
             options.max_difference_s),
-        "do both use the same clock? --t_offset is added to the estimate's stamps, --t_max_diff is the "
-        "limit");
+        "do both use the same clock and unit? --t_offset is added to the estimate's stamps, --t_max_diff is "
+        "the limit, --stamp_unit REF,EST gives the units, such as s,ns");
   }
   return result;
 }

@@ -69,8 +69,10 @@ TEST(MalformedSize, TenMillionRows) {
 TEST(MalformedSize, OneLineOfManyMegabytes) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("rgb.txt", std::string(64 * kMegabyte, '1'));
-  const ChildResult result =
-      run_in_child(64 * kMegabyte, [&] { return read_image_list(file).error().message; });
+  const ChildResult result = run_in_child(64 * kMegabyte, [&] {
+    std::vector<std::string> warnings;
+    return read_image_list(file, warnings).error().message;
+  });
   EXPECT_NE(result.text.find("rgb.txt:1: line is longer than 65536 characters"), std::string::npos)
       << result.text;
 }

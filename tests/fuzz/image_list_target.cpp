@@ -27,8 +27,9 @@ void check_rows(const Result<Rows>& rows, const std::filesystem::path& file) {
 void image_list(std::string_view bytes) {
   static const MemoryFile file("list");
   file.write(bytes);
-  check_rows(read_image_list(file.path()), file.path());
-  check_rows(read_tum_accelerometer(file.path()), file.path());
+  std::vector<std::string> warnings;
+  check_rows(read_image_list(file.path(), warnings), file.path());
+  check_rows(read_tum_accelerometer(file.path(), warnings), file.path());
 }
 
 }  // namespace fusebench::fuzz

@@ -21,7 +21,8 @@ void check_read(const MemoryFile& file, std::optional<TrajectoryFormat> format, 
     check_error(loaded.error(), file.path());
     return;
   }
-  check(!format || loaded->format == *format, "a named format is the one that is read");
+  check(!format || loaded->format == *format || loaded->format_source.starts_with("names"),
+        "a given format is the one that is read, unless the file names its columns");
   check(!loaded->poses.empty(), "a trajectory has poses");
   const bool with_covariances = loaded->format == TrajectoryFormat::openvins;
   check(loaded->covariances.size() == (with_covariances ? loaded->poses.size() : 0),

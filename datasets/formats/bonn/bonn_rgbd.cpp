@@ -39,9 +39,9 @@ calibration::RigCalibration published_calibration() {
 
 Result<void> read_frames(const std::filesystem::path& folder, const recording::ReadOptions& options,
                          recording::Recording& recording) {
-  const auto color = reading::read_image_list(folder / "rgb.txt");
+  const auto color = reading::read_image_list(folder / "rgb.txt", recording.warnings);
   if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::read_image_list(folder / "depth.txt");
+  const auto depth = reading::read_image_list(folder / "depth.txt", recording.warnings);
   if (!depth) return tl::unexpected(depth.error());
   return reading::pair_images({"rgb.txt", *color}, {"depth.txt", *depth}, options, recording);
 }

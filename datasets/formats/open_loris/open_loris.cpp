@@ -72,9 +72,9 @@ Result<calibration::RigCalibration> published_calibration(const std::filesystem:
 
 Result<void> read_frames(const std::filesystem::path& folder, const recording::ReadOptions& options,
                          recording::Recording& recording) {
-  const auto color = reading::read_image_list(folder / "color.txt");
+  const auto color = reading::read_image_list(folder / "color.txt", recording.warnings);
   if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::read_image_list(folder / "aligned_depth.txt");
+  const auto depth = reading::read_image_list(folder / "aligned_depth.txt", recording.warnings);
   if (!depth) return tl::unexpected(depth.error());
   return reading::pair_images({"color.txt", *color}, {"aligned_depth.txt", *depth}, options, recording);
 }

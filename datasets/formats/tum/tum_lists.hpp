@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -10,9 +11,9 @@
 
 namespace fusebench::formats::tum {
 
-/// accelerometer.txt: "timestamp ax ay az", m/s^2, in strictly increasing time. Errors name file:line:
-/// data_missing, data_corrupt.
+/// accelerometer.txt: "timestamp ax ay az", m/s^2, in strictly increasing time. Stamps count as those of
+/// image lists do. Errors name file:line: data_missing, data_corrupt.
 [[nodiscard]] Result<std::vector<recording::AccelerometerSample>> read_tum_accelerometer(
-    const std::filesystem::path& file);
+    const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace fusebench::formats::tum

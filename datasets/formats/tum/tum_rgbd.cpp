@@ -35,9 +35,9 @@ Result<calibration::RigCalibration> camera_of_folder(const std::string& name) {
 
 Result<void> read_lists(const std::filesystem::path& folder, const recording::ReadOptions& options,
                         recording::Recording& recording) {
-  const auto color = reading::read_image_list(folder / "rgb.txt");
+  const auto color = reading::read_image_list(folder / "rgb.txt", recording.warnings);
   if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::read_image_list(folder / "depth.txt");
+  const auto depth = reading::read_image_list(folder / "depth.txt", recording.warnings);
   if (!depth) return tl::unexpected(depth.error());
   return reading::pair_images({"rgb.txt", *color}, {"depth.txt", *depth}, options, recording);
 }
@@ -45,7 +45,7 @@ Result<void> read_lists(const std::filesystem::path& folder, const recording::Re
 Result<void> read_accelerometer(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path file = folder / "accelerometer.txt";
   if (!io::is_named(file)) return {};
-  auto samples = read_tum_accelerometer(file);
+  auto samples = read_tum_accelerometer(file, recording.warnings);
   if (!samples) return tl::unexpected(samples.error());
   recording.accelerometer = std::move(*samples);
   return {};

@@ -75,7 +75,7 @@ Result<int> run(const NeesOptions& options) {
   if (!sides->reference.has_stamps())
     return fail(ErrorCode::usage, "the reference has no stamps (kitti)", "use a TUM or EuRoC file");
   metric_reports::ConsistencyQuestion question;
-  question.files = {options.reference, sides->reference.format, options.estimate, sides->estimate.format};
+  question.files = trajectories::compared_files(options.reference, options.estimate, *sides);
   question.association = options.association;
   question.alignment.mode = alignment_named(options.align);
   const auto consistency = trajectory_error::pose_consistency(sides->reference.poses, sides->estimate,
@@ -112,6 +112,7 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
       ->type_name("S")
       ->capture_default_str();
   verb->add_option("--t_offset", options->association.offset_s, "Added to the estimate's stamps")
+      ->check(console::stamp_range())
       ->type_name("S")
       ->capture_default_str();
   verb->add_option("--errors", options->errors, "Writes errors, sigmas and NEES of each pose")

@@ -9,6 +9,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/text/text_file.hpp"
@@ -19,7 +20,8 @@ namespace fusebench::cli::trajectories {
 
 namespace {
 
-Result<trajectory_files::TrajectoryReading> reading_of(const BundleOptions& options) {
+/// The estimate's is that of all files but the reference.
+Result<SideReadings> readings_of(const BundleOptions& options) {
   trajectory_files::TrajectoryReading reading;
   reading.duplicates = trajectory::Duplicates::as_written;  // a look at the file as it is
   if (!options.format.empty()) {
@@ -27,12 +29,9 @@ Result<trajectory_files::TrajectoryReading> reading_of(const BundleOptions& opti
     if (!format) return tl::unexpected(format.error());
     reading.format = *format;
   }
-  if (!options.stamp_unit.empty()) {
-    const auto unit = trajectory_files::parse_stamp_unit(options.stamp_unit);
-    if (!unit) return tl::unexpected(unit.error());
-    reading.stamp_unit = *unit;
-  }
-  return reading;
+  SideReadings readings{reading, reading};
+  if (auto set = set_stamp_units(options.stamp_unit, readings); !set) return tl::unexpected(set.error());
+  return readings;
 }
 
 Result<NamedFile> load(const std::string& file, const BundleOptions& options,
@@ -43,16 +42,18 @@ Result<NamedFile> load(const std::string& file, const BundleOptions& options,
   transcript.warn(warnings);
   const std::string name = options.full_names ? file : std::filesystem::path(file).stem().string();
   const bool has_stamps = loaded->has_stamps();
+  const std::string format(trajectory_files::to_string(loaded->format));
   Trajectory poses = std::move(loaded->poses);
   if (options.downsample > 0) poses = trajectory_error::downsampled(poses, options.downsample);
   if (!options.motion_filter.empty())
     poses = trajectory_error::moved_only(poses, options.motion_filter[0], radians(options.motion_filter[1]));
-  return NamedFile{file, {name, std::move(poses), has_stamps, std::move(warnings)}};
+  return NamedFile{file,
+                   {name, std::move(poses), has_stamps, format, loaded->format_source, std::move(warnings)}};
 }
 
 Result<Bundle> load_all(const BundleOptions& options, Transcript& transcript) {
-  const auto reading = reading_of(options);
-  if (!reading) return tl::unexpected(reading.error());
+  const auto readings = readings_of(options);
+  if (!readings) return tl::unexpected(readings.error());
   std::vector<std::string> files;
   for (const std::string& file : options.files) {
     if (file != options.reference) files.push_back(file);
@@ -61,7 +62,8 @@ Result<Bundle> load_all(const BundleOptions& options, Transcript& transcript) {
   Bundle bundle;
   bundle.has_reference = !options.reference.empty();
   for (const std::string& file : files) {
-    auto loaded = load(file, options, *reading, transcript);
+    const bool is_reference = file == options.reference;
+    auto loaded = load(file, options, is_reference ? readings->reference : readings->estimate, transcript);
     if (!loaded) return tl::unexpected(loaded.error());
     bundle.trajectories.push_back(std::move(*loaded));
   }

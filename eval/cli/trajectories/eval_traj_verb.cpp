@@ -7,6 +7,7 @@
 #include "eval/cli/trajectories/bundle_request.hpp"
 #include "eval/cli/trajectories/clock_request.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/metric_reports/trajectories_plot.hpp"
@@ -65,10 +66,7 @@ void add_bundle_options(CLI::App& verb, BundleOptions& options) {
   verb.add_option("--format", options.format,
                   "Format of all files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
-  verb.add_option(
-          "--stamp_unit", options.stamp_unit,
-          "What stamps of tum and openvins count: s, ms, us or ns; recognised by their size if since 1970")
-      ->type_name("UNIT");
+  verb.add_option("--stamp_unit", options.stamp_unit, kStampUnitHelp)->type_name("UNIT[,UNIT]");
   verb.add_option("--ref", options.reference,
                   "The reference, which the others are aligned to and which is listed last")
       ->type_name("FILE");

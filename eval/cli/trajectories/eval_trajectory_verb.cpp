@@ -35,18 +35,13 @@ Result<Sides> load(const TrajectoryOptions& options, trajectory_error::Protocol 
     if (!parsed) return tl::unexpected(parsed.error());
     reading.format = *parsed;
   }
-  if (!options.stamp_unit.empty()) {
-    const auto parsed = trajectory_files::parse_stamp_unit(options.stamp_unit);
-    if (!parsed) return tl::unexpected(parsed.error());
-    reading.stamp_unit = *parsed;
-  }
   const trajectory::Duplicates usual = protocol == trajectory_error::Protocol::evo
                                            ? trajectory::Duplicates::rare_kept
                                            : trajectory::Duplicates::rare_last;
   reading.duplicates = options.duplicates.empty() ? usual : named(kDuplicates, options.duplicates);
   SideReadings readings{reading, reading};
-  // evo's euroc: the reference is a data.csv, the estimate may be TUM text.
-  if (reading.format == trajectory_files::TrajectoryFormat::euroc) readings.estimate.format.reset();
+  readings.estimate.tum_without_commas = reading.format == trajectory_files::TrajectoryFormat::euroc;
+  if (auto set = set_stamp_units(options.stamp_unit, readings); !set) return tl::unexpected(set.error());
   std::vector<std::string> warnings;
   auto sides = load_sides(options.files[0], options.files[1], readings, warnings);
   transcript.warn(warnings);
@@ -113,11 +108,13 @@ Result<void> write_files(const TrajectoryOptions& options, const Sides& sides,
 
 Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
   if (auto taken = take_two_files(options); !taken) return tl::unexpected(taken.error());
-  auto request = request_of(options, metric);
+  std::vector<std::string> warnings;
+  auto request = request_of(options, metric, warnings);
   if (!request) return tl::unexpected(request.error());
   const auto plots = plot_files(options.plot);
   if (!plots) return tl::unexpected(plots.error());
   Transcript transcript(options.transcript);
+  transcript.warn(warnings);
   const auto sides = load(options, request->protocol, transcript);
   if (!sides) return tl::unexpected(sides.error());
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
@@ -134,8 +131,7 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   warn_of_few(*evaluation, transcript);
   if (auto written = write_files(options, *sides, *evaluation, *plots, transcript); !written)
     return tl::unexpected(written.error());
-  const metric_reports::ComparedFiles files = {options.files[0], sides->reference.format, options.files[1],
-                                               sides->estimate.format};
+  const metric_reports::ComparedFiles files = compared_files(options.files[0], options.files[1], *sides);
   const auto each =
       options.all_errors ? metric_reports::EachError::listed : metric_reports::EachError::left_out;
   transcript.result(options.json ? metric_reports::to_json(*evaluation, files, each, clock)
@@ -151,10 +147,7 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("--format", options.format,
                   "Format of both files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
-  verb.add_option(
-          "--stamp_unit", options.stamp_unit,
-          "What stamps of tum and openvins count: s, ms, us or ns; recognised by their size if since 1970")
-      ->type_name("UNIT");
+  verb.add_option("--stamp_unit", options.stamp_unit, kStampUnitHelp)->type_name("UNIT[,UNIT]");
   verb.add_option("--protocol", options.protocol,
                   "evo, tum, rpg, eth3d or kitti: sets the defaults of the options below")
       ->type_name("NAME")

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::trajectories {
@@ -21,6 +22,18 @@ struct SideReadings {
   trajectory_files::TrajectoryReading reference = {};
   trajectory_files::TrajectoryReading estimate = {};
 };
+
+/// Sets the unit of stamps: "ns" of both files, but of those that cannot count so; "s,ns" of the reference
+/// and of the estimate. Nothing if the text is empty. Error usage for another name or more than two.
+[[nodiscard]] Result<void> set_stamp_units(const std::string& units, SideReadings& readings);
+inline constexpr const char* kStampUnitHelp =
+    "Unit of stamps: s, ms, us or ns, where names in the file do not say it. Files with decimals that the "
+    "unit "
+    "does not have stay in seconds; REF,EST gives it for either side. Default: by their size if since 1970";
+
+/// For reports.
+[[nodiscard]] metric_reports::ComparedFiles compared_files(const std::string& reference,
+                                                           const std::string& estimate, const Sides& sides);
 
 /// Reads both. Errors: those of load_trajectory().
 [[nodiscard]] Result<Sides> load_sides(const std::filesystem::path& reference,

@@ -9,7 +9,8 @@ namespace fusebench::cli::trajectories {
 
 namespace {
 
-Result<void> set_association(const TrajectoryOptions& options, trajectory_error::TrajectoryRequest& request) {
+Result<void> set_association(const TrajectoryOptions& options, trajectory_error::TrajectoryRequest& request,
+                             std::vector<std::string>& warnings) {
   trajectory_files::AssociationOptions& association = request.association;
   if (options.interpolate) {
     constexpr double kUsualGap_s = 0.1;
@@ -23,7 +24,7 @@ Result<void> set_association(const TrajectoryOptions& options, trajectory_error:
   if (options.images.empty()) return {};
   if (request.protocol != trajectory_error::Protocol::eth3d)
     return fail(ErrorCode::usage, "--images is for --protocol eth3d, which compares at the stamps of images");
-  auto stamps = trajectory_files::read_stamps(options.images);
+  auto stamps = trajectory_files::read_stamps(options.images, warnings);
   if (!stamps) return tl::unexpected(stamps.error());
   association.evaluated_ns = std::move(*stamps);
   return {};
@@ -70,7 +71,8 @@ Result<void> take_two_files(TrajectoryOptions& options) {
 }
 
 Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& options,
-                                                       trajectory_error::TrajectoryMetric metric) {
+                                                       trajectory_error::TrajectoryMetric metric,
+                                                       std::vector<std::string>& warnings) {
   if (options.all_errors && !options.json)
     return fail(ErrorCode::usage, "--all_errors is for --json",
                 "--errors FILE.csv writes each error with its stamp");
@@ -94,7 +96,7 @@ Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& 
   const auto alignment = aligned_by(options.alignment, request->alignment);
   if (!alignment) return tl::unexpected(alignment.error());
   request->alignment = *alignment;
-  for (const auto& set : {set_association(options, *request),
+  for (const auto& set : {set_association(options, *request, warnings),
                           metric == trajectory_error::TrajectoryMetric::rpe ? set_motions(options, *request)
                                                                             : Result<void>{}}) {
     if (!set) return tl::unexpected(set.error());

@@ -86,9 +86,10 @@ inline constexpr std::array<std::pair<const char*, metric_reports::PlotAbscissa>
 [[nodiscard]] Result<void> take_two_files(TrajectoryOptions& options);
 
 /// The protocol's request, with what the options change. Error usage for options that do not go together;
-/// errors of read_stamps() for --images.
+/// errors and warnings of read_stamps() for --images.
 [[nodiscard]] Result<trajectory_error::TrajectoryRequest> request_of(
-    const TrajectoryOptions& options, trajectory_error::TrajectoryMetric metric);
+    const TrajectoryOptions& options, trajectory_error::TrajectoryMetric metric,
+    std::vector<std::string>& warnings);
 
 /// Poses without stamps are associated by their index, whatever the protocol does otherwise. Error usage if
 /// that is not possible.

@@ -73,8 +73,43 @@ TEST(TextTable, WrongNumberOfColumnsNamesPlaceAndExpectation) {
   EXPECT_NE(read_all("1 a b\n", "t name").error.find(":1: expected 2 columns: t name, got 3"),
             std::string::npos);
   EXPECT_NE(read_all("1,,a\n", "t name").error.find("got 3"), std::string::npos) << "an empty field counts";
-  EXPECT_NE(read_all("1,a,\n", "t name").error.find("got 3"), std::string::npos)
+  EXPECT_NE(read_all("1,a,,\n", "t name").error.find("got 4"), std::string::npos)
       << "so does an empty last one";
+}
+
+TEST(TextTable, ACommaAfterTheLastValueIsNoColumn) {
+  EXPECT_EQ(read_all("1,a,\n2,b ,\n3,c\n", "t name").fields, (Fields{{"1", "a"}, {"2", "b"}, {"3", "c"}}));
+  std::vector<std::string_view> fields;
+  split_fields("1,,", fields);
+  EXPECT_EQ(fields.size(), 3U) << "values that are missing";
+}
+
+TEST(TextTable, MoreColumnsWhereTheyAreAllowed) {
+  EXPECT_EQ(read_all("1 a x y\n2 b x y\n", "t name ...").fields, (Fields{{"1", "a"}, {"2", "b"}}));
+  EXPECT_NE(read_all("1\n", "t name ...").error.find(":1: expected 2 columns or more: t name, got 1"),
+            std::string::npos);
+  const std::string ragged = read_all("# c\n1 a x\n2 b\n", "t name ...").error;
+  EXPECT_NE(ragged.find(":3: expected 3 columns as in line 2: t name ..., got 2"), std::string::npos)
+      << ragged;
+  EXPECT_NE(read_all("1 a\n2 b x\n", "t name ...").error.find(":2: expected 2 columns: t name, got 3"),
+            std::string::npos);
+  EXPECT_FALSE(read_all("1 a\r2 b\r3 c", "t name ...").error.empty()) << "several rows in one line";
+}
+
+TEST(TextTable, HintsSayWhatIsWrongWithARow) {
+  const TemporaryFolder folder;
+  const auto hint = [&](std::string_view text) {
+    auto table = TextTable::open(folder.write("t.txt", text), "timestamp a b");
+    const auto row = table->next();
+    if (!row) return row.error().hint;
+    const auto time = table->time_ns(0);
+    return time ? std::string() : time.error().hint;
+  };
+  EXPECT_NE(hint("timestamp,a,b\n1,2,3\n").find("Put # before it"), std::string::npos);
+  EXPECT_NE(hint("timestamp,a\n1,2,3\n").find("Put # before it"), std::string::npos);
+  EXPECT_NE(hint("1,5 2,5 3,5\n").find("decimal comma"), std::string::npos);
+  EXPECT_NE(hint("1;2;3\n").find("semicolons"), std::string::npos);
+  EXPECT_EQ(hint("1 2 3 4\n"), "");
 }
 
 TEST(TextTable, RefusesWhatIsNotText) {

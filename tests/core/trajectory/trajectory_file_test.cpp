@@ -80,9 +80,12 @@ TEST_F(TrajectoryFile, ErrorsNameTheLine) {
   };
   expect_line("# header\n1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 1\n", 3,
               "expected 8 columns: timestamp tx ty tz qx qy qz qw, got 7");
-  expect_line("1.0 0 0 0 0 0 0 1 9\n", 1, "got 9");
-  expect_line("1.0 0 nan 0 0 0 0 1\n", 1, "ty: expected a finite number");
-  expect_line("1.0 0 0 0 0 0 0 0\n", 1, "quaternion");
+  expect_line("1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 0 1 9\n", 2, "got 9");
+  expect_line("1.0 0 0 0 0 0 1\n", 1, "expected 8 columns or more");
+  expect_line("1.0 0 inf 0 0 0 0 1\n", 1, "ty: expected a finite number");
+  expect_line("1.0 0 nan 0 0 0 0 inf\n", 1, "qw: expected a finite number");
+  expect_line("1.0 0 0 0 0 0 0 1e-9\n", 1, "quaternion");
+  expect_line("nan 0 0 0 0 0 0 1\n", 1, "timestamp: expected a time");
   expect_line("\n1.0 0 0 0x 0 0 0 1\n", 2, "tz: expected a finite number");
   expect_line("1.0 0 0 0 0 0 0 1\n1.0 1 0 0 0 0 0 1\n", 2, "is the same as that of line 1");
   expect_line("2.0 0 0 0 0 0 0 1\n1.0 1 0 0 0 0 0 1\n", 2, "time runs backwards by 1 s");
@@ -113,6 +116,112 @@ TEST_F(TrajectoryFile, QuaternionsAreNormalisedAndLongOnesCounted) {
   for (const StampedPose& pose : *path) EXPECT_NEAR(pose.T_world_camera.rotation.norm(), 1, 1e-15);
   ASSERT_EQ(warnings_.size(), 1U);
   EXPECT_TRUE(warnings_[0].starts_with(file_.string() + ":2: 2 of 3 quaternions")) << warnings_[0];
+}
+
+TEST_F(TrajectoryFile, RowsOfLostFramesAreLeftOutAndCounted) {
+  const auto path = read(
+      "1 0 0 0 0 0 0 1\n2 nan nan nan nan nan nan nan\n2 0 0 0 0 0 0 0\n3 1 2 -NaN 0 0 0 1\n4,,,,,,,\n"
+      "5 9 9 9 0 0 0 1\n");
+  ASSERT_TRUE(path) << path.error().message;
+  ASSERT_EQ(path->size(), 2U) << "a stamp that lost frames repeat is no error";
+  EXPECT_EQ((*path)[1].timestamp_ns, 5'000'000'000);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_EQ(warnings_[0],
+            file_.string() +
+                ":2: 4 of 6 rows are of lost frames (nan, or the quaternion 0 0 0 0) and are left out");
+  const auto none = read("1 0 0 0 0 0 0 0\n2 nan 0 0 0 0 0 1\n");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find(":1: all 2 rows are of lost frames"), std::string::npos);
+}
+
+TEST_F(TrajectoryFile, MoreColumnsAreCountedUnlessTheyAreNamed) {
+  EXPECT_TRUE(read("1 0 0 0 0 0 0 1 7\n2 0 0 0 0 0 0 1 8\n"));
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_EQ(warnings_[0], file_.string() + ":1: 1 columns after the first 8 are not used");
+  EXPECT_TRUE(read("#timestamp x y z qx qy qz qw id\n1 0 0 0 0 0 0 1 7\n"));
+  EXPECT_TRUE(warnings_.empty());
+  EXPECT_TRUE(read("1,0,0,0,0,0,0,1,\n2,0,0,0,0,0,0,1,\n")) << "a comma at the end is no column";
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(TrajectoryFile, NamesSayWhichColumnsAreWhich) {
+  for (const char* hash : {"", "# ", "%"}) {
+    const auto path =
+        read(std::string(hash) + "index,time,qw,qx,qy,qz,tx,ty,tz\n0,1.5,0.5,-0.5,0.5,0.5,1,2,3\n");
+    ASSERT_TRUE(path) << path.error().message;
+    EXPECT_EQ((*path)[0].timestamp_ns, 1'500'000'000);
+    EXPECT_EQ((*path)[0].T_world_camera.translation, Vector3d(1, 2, 3));
+    EXPECT_NEAR((*path)[0].T_world_camera.rotation.w(), 0.5, 1e-15);
+    EXPECT_NEAR((*path)[0].T_world_camera.rotation.x(), -0.5, 1e-15);
+  }
+  const auto comment = read("# t x of the camera, qx qy\n# made at 10:30, w of q is last\n1 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(comment) << comment.error().message;
+  EXPECT_EQ((*comment)[0].T_world_camera.translation.x(), 1);
+  const auto longer = read("# these are timestamp tx ty tz qw qx qy qz\n1 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(longer) << longer.error().message;
+  EXPECT_EQ((*longer)[0].T_world_camera.rotation.w(), 1) << "ten words are no names of eight columns";
+  const auto last = read("# t x y z qw qx qy qz\n# t x y z qx qy qz qw\n1 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(last);
+  EXPECT_EQ((*last)[0].T_world_camera.rotation.w(), 1) << "the line above the rows counts";
+}
+
+TEST_F(TrajectoryFile, LinesOfNamesThatDoNotNameAPoseAreErrors) {
+  const auto expect_refused = [&](const std::string& text, std::string_view part) {
+    const auto refused = read(text);
+    ASSERT_FALSE(refused) << text;
+    EXPECT_EQ(refused.error().code, ErrorCode::data_corrupt);
+    EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().hint.find("put # before"), std::string::npos) << refused.error().hint;
+  };
+  expect_refused("# c\nt,tx,ty,tz,q0,q1,q2,q3\n1,0,0,0,0,0,0,1\n",
+                 ":2: a line of names, but no column is named as the x of the quaternion (qx)");
+  expect_refused("a,b,c,d,e,f,g,h\n1,0,0,0,0,0,0,1\n",
+                 ":1: a line of names, but no column is named as the stamp");
+  expect_refused("t x y z qx qy qz qw\n1 1 0 0 0 0 0 0 1\n", ":2: 9 columns, but line 1 has 8 names");
+}
+
+TEST_F(TrajectoryFile, NamedUnitsUnlessStampsContradictThem) {
+  const auto stamp_of = [&](const std::string& text) {
+    const auto path = read(text);
+    EXPECT_TRUE(path) << path.error().message;
+    return path ? (*path)[0].timestamp_ns : 0;
+  };
+  EXPECT_EQ(stamp_of("# timestamp[ns] tx ty tz qx qy qz qw\n12345 0 0 0 0 0 0 1\n"), 12345);
+  EXPECT_EQ(stamp_of("t_us,tx,ty,tz,qx,qy,qz,qw\n12345,0,0,0,0,0,0,1\n"), 12'345'000);
+  EXPECT_TRUE(warnings_.empty());
+  EXPECT_EQ(stamp_of("# timestamp[ns] tx ty tz qx qy qz qw\n1403636579.5 0 0 0 0 0 0 1\n"),
+            1403636579500000000);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(
+      warnings_[0].find(":1: the stamps are named as nanoseconds, which 1403636579.5 cannot be: read as "
+                        "seconds"),
+      std::string::npos)
+      << warnings_[0];
+  EXPECT_EQ(stamp_of("# timestamp[s] tx ty tz qx qy qz qw\n1403636579500000000 0 0 0 0 0 0 1\n"),
+            1403636579500000000);
+  EXPECT_EQ(warnings_.size(), 1U);
+  const auto millimetres = read("# t tx[mm] ty[mm] tz[mm] qx qy qz qw\n1 1000 2000 0 0 0 0 1\n");
+  ASSERT_TRUE(millimetres);
+  EXPECT_EQ((*millimetres)[0].T_world_camera.translation, Vector3d(1, 2, 0));
+  EXPECT_EQ(warnings_.size(), 1U) << "positions that are changed are reported";
+}
+
+TEST_F(TrajectoryFile, StampsOutOfRangeNameTheOption) {
+  const auto refused = read("12345678901 0 0 0 0 0 0 1\n");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().hint.find("--stamp_unit"), std::string::npos) << refused.error().hint;
+}
+
+TEST_F(TrajectoryFile, DecimalCommasAreNamed) {
+  for (const char* row :
+       {"1403636579,763556 0,554494 2,064888 3,347873 0,136532 0,020477 0,538971 0,830933\n",
+        "1403636579,763556 0 0 0 0 0 0 1\n", "1,5;0,5;2,0;3,3;0,1;0,0;0,5;0,8\n"}) {
+    const auto refused = read(row);
+    ASSERT_FALSE(refused) << row;
+    EXPECT_NE(refused.error().message.find(":1: decimal commas"), std::string::npos)
+        << refused.error().message;
+    EXPECT_NE(refused.error().hint.find("decimal point"), std::string::npos) << refused.error().hint;
+  }
 }
 
 TEST_F(TrajectoryFile, MissingAndEmptyFiles) {

@@ -195,7 +195,8 @@ TEST(RegularStamps, JitterOfARealKinect) {
   if (data == nullptr) GTEST_SKIP() << "FUSEBENCH_DATA is not set";
   const auto list = std::filesystem::path(data) / "rgbd_dataset_freiburg1_rpy_first240" / "rgb.txt";
   if (!std::filesystem::exists(list)) GTEST_SKIP() << list << " does not exist";
-  const auto images = read_image_list(list);
+  std::vector<std::string> warnings;
+  const auto images = read_image_list(list, warnings);
   ASSERT_TRUE(images) << images.error().message;
   Stamps stamps;
   for (const ListedImage& image : *images) stamps.push_back(image.timestamp_ns);

@@ -41,7 +41,8 @@ Result<void> into_recording(const fs::path& folder) {
 }
 
 Result<void> read_accelerometer(const fs::path& folder) {
-  const auto samples = read_tum_accelerometer(folder / "accelerometer.txt");
+  std::vector<std::string> warnings;
+  const auto samples = read_tum_accelerometer(folder / "accelerometer.txt", warnings);
   return samples ? Result<void>{} : tl::unexpected(samples.error());
 }
 

@@ -1,0 +1,164 @@
+#include "core/trajectory/pose_head.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/base/printable.hpp"
+#include "core/io/bounded_text.hpp"
+#include "core/io/input_file.hpp"
+#include "core/io/row_text.hpp"
+#include "core/io/stamp_unit.hpp"
+
+namespace fusebench::trajectory {
+
+namespace {
+
+constexpr std::size_t kMostHeadRows = 20;
+constexpr std::size_t kMostNames = 200;
+constexpr std::size_t kFewestColumns = 8;
+
+/// A line that names all of a pose is kept.
+void take_comment(std::string_view line, int number, PoseHead& head) {
+  std::vector<std::string> names = column_names(line);
+  if (names.size() > kMostNames) return;
+  auto named = columns_by_name(names);
+  if (!named) return;
+  head.named = std::move(*named);
+  head.names = std::move(names);
+  head.names_line = number;
+}
+
+Result<void> take_line_of_names(std::string_view line, int number, const std::filesystem::path& file,
+                                PoseHead& head) {
+  std::vector<std::string> names = column_names(line);
+  auto named = columns_by_name(names);
+  if (!named) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}:{}: a line of names, but {}", file.string(), number, named.error().message),
+                "put # before the line, or name the columns timestamp, tx, ty, tz, qx, qy, qz and qw");
+  }
+  head.named = std::move(*named);
+  head.names = std::move(names);
+  head.names_line = number;
+  head.names_are_comment = false;
+  return {};
+}
+
+std::size_t words_in(std::string_view line) {
+  constexpr std::string_view kSeparators = " \t\r;";
+  std::size_t count = 0;
+  while (true) {
+    line.remove_prefix(std::min(line.find_first_not_of(kSeparators), line.size()));
+    if (line.empty()) return count;
+    ++count;
+    line.remove_prefix(std::min(line.find_first_of(kSeparators), line.size()));
+  }
+}
+
+/// Of a row that has the columns of a pose without its commas.
+Result<void> check_decimal_points(std::string_view line, int number, const std::filesystem::path& file) {
+  if (!io::has_decimal_commas(line) || words_in(line) < kFewestColumns) return {};
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}:{}: decimal commas in place of decimal points", file.string(), number),
+              std::string(io::kDecimalCommaHint));
+}
+
+/// Names of a comment that cannot be those of the rows are dropped.
+Result<void> check_names(const std::filesystem::path& file, PoseHead& head) {
+  if (!head.named || head.rows.empty() || head.names.size() == head.columns()) return {};
+  if (head.names_are_comment) {
+    const bool first_ones = head.names.size() < head.columns() && head.named->columns.stamp == 0;
+    if (!first_ones) head.named.reset();
+    return {};
+  }
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}:{}: {} columns, but line {} has {} names", file.string(),
+                          head.rows.front().line, head.columns(), head.names_line, head.names.size()),
+              "name each column, or put # before the line of names");
+}
+
+std::string stamp_in(const HeadRow& row, std::size_t column) {
+  return column < row.fields.size() ? row.fields[column] : std::string();
+}
+
+/// A stamp that cannot be in that unit, if there is one. The range is tested with the first stamp: a later
+/// one beyond it is an error of its row.
+std::optional<std::string> stamp_against(const PoseHead& head, std::size_t column, io::TimeUnit unit) {
+  for (std::size_t i = 0; i < head.rows.size(); ++i) {
+    std::string stamp = stamp_in(head.rows[i], column);
+    if (!io::parse_number(stamp)) continue;
+    const bool possible =
+        i == 0 ? io::can_be_in(unit, stamp)
+               : unit == io::TimeUnit::seconds || io::stamp_decimals(stamp) <= static_cast<int>(unit);
+    if (!possible) return stamp;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<PoseHead> read_pose_head(const std::filesystem::path& file) {
+  PoseHead head;
+  std::ifstream stream = io::input_file(file);
+  std::string line;
+  std::vector<std::string_view> fields;
+  for (int number = 1; head.rows.size() < kMostHeadRows && io::next_line(stream, line); ++number) {
+    std::string_view text = line;
+    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    if (text.find('\0') != text.npos) break;
+    io::split_fields(text, fields);
+    if (fields.empty()) continue;
+    if (fields[0].starts_with('#')) {
+      if (head.rows.empty() && head.names_are_comment) take_comment(text, number, head);
+      continue;
+    }
+    if (head.rows.empty() && head.names_are_comment && io::is_line_of_names(fields)) {
+      if (auto taken = take_line_of_names(text, number, file, head); !taken)
+        return tl::unexpected(taken.error());
+      continue;
+    }
+    if (auto points = check_decimal_points(text, number, file); !points)
+      return tl::unexpected(points.error());
+    head.rows.push_back({number, {fields.begin(), fields.end()}, text.find(',') != std::string_view::npos});
+  }
+  if (auto checked = check_names(file, head); !checked) return tl::unexpected(checked.error());
+  return head;
+}
+
+io::TimeUnit stamp_unit_of(const PoseHead& head, const PoseColumns& columns, const GivenUnit& given,
+                           const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  const HeadRow first = head.rows.empty() ? HeadRow{} : head.rows.front();
+  const io::TimeUnit by_size = io::unit_by_size(stamp_in(first, columns.stamp));
+  const auto against = [&](io::TimeUnit unit) { return stamp_against(head, columns.stamp, unit); };
+  const auto warn = [&](int line, const std::string& what) {
+    warnings.push_back(fmt::format("{}:{}: {}", file.string(), line, what));
+  };
+  if (columns.unit) {
+    if (const auto stamp = against(*columns.unit)) {
+      warn(head.names_line, fmt::format("the stamps are named as {}, which {} cannot be: read as {}",
+                                        to_string(*columns.unit), printable(*stamp), to_string(by_size)));
+      return by_size;
+    }
+    if (given.unit && *given.unit != *columns.unit)
+      warn(head.names_line, fmt::format("the stamps are named as {}: read so, and not as {}",
+                                        to_string(*columns.unit), to_string(*given.unit)));
+    return *columns.unit;
+  }
+  for (const std::optional<io::TimeUnit>& unit : {given.unit, given.unit ? std::nullopt : given.usual}) {
+    if (!unit) continue;
+    const auto stamp = against(*unit);
+    if (!stamp || (given.unit && given.of_this_file)) return *unit;
+    warn(first.line, fmt::format("stamps such as {} are no {}: read as {}", printable(*stamp),
+                                 to_string(*unit), to_string(by_size)));
+    return by_size;
+  }
+  if (by_size != io::TimeUnit::seconds)
+    warn(first.line, fmt::format("stamps are read as {}, by their size", to_string(by_size)));
+  return by_size;
+}
+
+}  // namespace fusebench::trajectory

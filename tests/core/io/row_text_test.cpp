@@ -1,0 +1,48 @@
+#include "core/io/row_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+#include <vector>
+
+#include "core/io/text_table.hpp"
+
+namespace fusebench {
+
+using namespace io;
+
+namespace {
+
+bool names(std::string_view line) {
+  std::vector<std::string_view> fields;
+  split_fields(line, fields);
+  return is_line_of_names(fields);
+}
+
+TEST(RowText, LinesOfNamesHaveNoNumbers) {
+  for (const char* line :
+       {"timestamp tx ty tz qx qy qz qw", "ts (ns),tx (m),ty (m)", "%time,field.header.seq",
+        "timestamp [ns], q_RS_w [], q_RS_x []", ",t,x", "\"\",\"t\",\"x\"", "p1 p2"})
+    EXPECT_TRUE(names(line)) << line;
+  for (const char* line : {"noon 0 0 0", "1 2 3", "nan nan", "inf -inf", "time", "1O 2O", "", "- -",
+                           "\x89PNG\x1A x", "0x10 0x11"})
+    EXPECT_FALSE(names(line)) << line;
+}
+
+TEST(RowText, DecimalCommasAreBetweenDigits) {
+  for (const char* line :
+       {"1403636579,763556 0,554494 -2,064888", "0,5\t1\t1,5e-3", "1,5;2,5;0", "12,5 rgb/1.png"})
+    EXPECT_TRUE(has_decimal_commas(line)) << line;
+  for (const char* line : {"1, 2, 3", "1 ,2", "1,2,3", "0,5 1.5", "1.0,2.0", "1 2 3", "", "1,", ",5 0"})
+    EXPECT_FALSE(has_decimal_commas(line)) << line;
+}
+
+TEST(RowText, NanInAllSpellings) {
+  for (const char* field : {"nan", "NaN", "-nan", "NAN", "nan(ind)", "-nan(snan)"})
+    EXPECT_TRUE(is_nan(field)) << field;
+  for (const char* field : {"", "inf", "nano", "1", "na", "nan(", "none"})
+    EXPECT_FALSE(is_nan(field)) << field;
+}
+
+}  // namespace
+}  // namespace fusebench
