@@ -91,7 +91,7 @@ check_bad_data() {
   refused "a word for a number" 3 'groundtruth.txt:9.*abc' -- "${run[@]}"
 
   fresh_copy
-  sed -i '9s/.*/1305031229.3633 nan 0 0 0 0 0 1/' freiburg1_copy/groundtruth.txt
+  sed -i '9s/.*/1305031229.3633 inf 0 0 0 0 0 1/' freiburg1_copy/groundtruth.txt
   refused "not a number" 3 'groundtruth.txt:9' -- "${run[@]}"
 
   fresh_copy
@@ -612,6 +612,51 @@ prints() {
   grep -qE -- "$pattern" stdout || complain "$name: does not print '$pattern'"
 }
 
+# accepted NAME PATTERN WARNING ARGUMENT...: the program succeeds, prints the pattern and the warning.
+accepted() {
+  local name=$1 pattern=$2 warning=$3
+  shift 3
+  checks=$((checks + 1))
+  "$binary" "$@" >stdout 2>stderr || complain "$name: exit code $?"
+  grep -qE -- "$pattern" stdout || complain "$name: does not print '$pattern'"
+  grep -qE -- "^warning: .*$warning" stderr || complain "$name: does not warn of '$warning'"
+}
+
+# Names of columns, lost frames, more columns, whole matrices.
+check_formats() {
+  local files rmse
+  prints '^formats: reference tum \(by its columns\), estimate tum \(by its columns\)$' "formats" eval ate gt.txt est.txt
+  [[ $(head -1 stdout) == formats:* ]] || complain "formats are not in the first line"
+  prints '"format_source": "by its columns"' "formats as JSON" eval ate gt.txt est.txt --json
+  prints '^formats: tum \(by its columns\)$' "formats of a list" eval traj gt.txt est.txt
+  prints '^formats: data euroc \(by its columns\), gt tum \(by its columns\)$' "formats that differ" eval traj data.csv gt.txt
+  rmse=$("$binary" eval ate gt.txt est.txt | grep '^rmse')
+  (echo "timestamp,tx,ty,tz,qx,qy,qz,qw" && tr ' ' , <est.txt) >names.csv
+  (echo "num,t,x,y,z,qx,qy,qz,qw" && awk '{ print NR "," $0 }' est.txt | tr ' ' ,) >numbered.csv
+  (echo "%time,field.header.stamp,$(printf 'field.pose.position.%s,' x y z)$(printf 'field.pose.orientation.%s,' x y z)field.pose.orientation.w" &&
+    awk '{ print $1 + 1, $0 }' est.txt | tr ' ' ,) >ros.csv
+  (echo "#timestamp x y z qx qy qz qw id" && awk '{ print $0, NR }' est.txt) >id.txt
+  for files in names.csv numbered.csv ros.csv id.txt; do
+    checks=$((checks + 1))
+    "$binary" eval ate tum gt.txt "$files" >stdout 2>stderr || complain "$files: exit code $?"
+    [[ $(grep '^rmse' stdout) == "$rmse" ]] || complain "$files: another error than of est.txt"
+    head -1 stdout | grep -q 'estimate tum (names in line 1)$' || complain "$files: the source of the format is not printed"
+  done
+  awk 'NR % 10 == 5 { print $1, "nan nan nan nan nan nan nan"; next } NR % 10 == 6 { print $1, "0 0 0 0 0 0 0"; next } { print }' est.txt >lost.txt
+  awk 'NR % 10 != 5 && NR % 10 != 6' est.txt >kept.txt
+  for files in evo tum rpg; do
+    accepted "lost frames with $files" '^rmse' 'lost.txt:5: 12 of 60 rows are of lost frames' eval ate gt.txt lost.txt --protocol "$files"
+    [[ $(grep '^rmse' stdout) == "$("$binary" eval ate gt.txt kept.txt --protocol "$files" | grep '^rmse')" ]] ||
+      complain "lost frames with $files: another error than without their rows"
+  done
+  awk '{ print $0, "0 0 0 1" }' kitti.txt >whole.txt
+  prints 'by the number of the pose' "whole matrices" eval ate whole.txt kitti.txt
+  sed 's/\./,/g' est.txt >commas.txt
+  refused "decimal commas" 3 'commas.txt:1: decimal commas' 'hint:decimal point' -- eval ate tum gt.txt commas.txt
+  refused "a line of names without a pose" 3 'few.csv:1: a line of names, but no column' 'hint:put # before' -- \
+    eval ate gt.txt "$(sed '1s/qw/q/' names.csv >few.csv && echo few.csv)"
+}
+
 check_evaluation() {
   curve 0 1 >gt.txt
   curve 0.004 1.1 >est.txt
@@ -722,8 +767,9 @@ check_evaluation() {
   refused "motions too long" 3 'no motion of 60 poses' -- eval rpe gt.txt est.txt -d 1000
   refused "a short row" 3 'short.txt:5' -- eval ate "$(sed '5s/ [^ ]*$//' gt.txt >short.txt && echo short.txt)" est.txt
   refused "not a number" 3 'nan.txt:7' -- eval ate "$(sed '7s/^[^ ]*/nan/' gt.txt >nan.txt && echo nan.txt)" est.txt
-  refused "no quaternion" 3 'zero.txt:3.*norm 0' -- \
-    eval ate "$(sed '3s/.*/1305031100.2 0 0 0 0 0 0 0/' gt.txt >zero.txt && echo zero.txt)" est.txt
+  refused "no quaternion" 3 'zero.txt:3.*norm 1e-09' -- \
+    eval ate "$(sed '3s/.*/1305031100.2 0 0 0 0 0 0 1e-9/' gt.txt >zero.txt && echo zero.txt)" est.txt
+  check_formats
   refused "a repeated stamp" 3 'twice.txt:2.*line 1' 'hint:keep takes both' -- \
     eval ate "$(sed '1p' gt.txt >twice.txt && echo twice.txt)" est.txt
   refused "two trajectories" 3 'two.txt:61: time jumps back' 'hint:split' -- \
@@ -809,6 +855,14 @@ check_evo() {
   awk '{ $1 = sprintf("%.0f", ($1 - 1305031100) * 1000); print }' gt.txt >relative.txt
   prints '5.900s duration' "a unit that is told" eval traj relative.txt --stamp_unit ms
   refused "an unknown unit" 2 "unit of stamps 'min'" -- eval ape gt.txt est.txt --stamp_unit min
+  refused "an unknown second unit" 2 "unit of stamps 'min'" -- eval ape gt.txt est.txt --stamp_unit s,min
+  awk '{ $1 = sprintf("%.3f", $1 - 1305031100); print }' gt.txt >seconds.txt
+  awk '{ $1 = sprintf("%.0f", ($1 - 1305031100) * 1000000000); print }' gt.txt >nanoseconds.txt
+  prints '60 of 60 possible' "a unit for either side" eval ape seconds.txt relative.txt --stamp_unit s,ms
+  accepted "one unit for files that can be in it" '60 of 60 possible' 'seconds.txt:1: stamps such as [0-9.]* are no nanoseconds' \
+    eval ape tum seconds.txt nanoseconds.txt --stamp_unit ns
+  refused "another unit" 3 'match within' 'hint:--stamp_unit REF,EST' -- eval ape seconds.txt relative.txt --t_offset 50
+  prints '60 of 60 possible' "a huge limit" eval ape gt.txt est.txt --protocol tum --t_max_diff 1e300
 
   # What is not understood.
   refused "a bag" 2 'bags are not read' 'hint:--save_as_tum' -- eval ape bag run.bag /gt /est

@@ -277,9 +277,11 @@ TEST(TumRgbd, RefusesBadRowsWithFileAndLine) {
                   "depth.txt:3: timestamp 10.00 is the same as that of line 1");
   expect_contains(after_writing("depth.txt", "20.0 depth/0.png\n"), "no colour image");
   expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 1\n"),
-                  "groundtruth.txt:1: expected 8 columns: timestamp tx ty tz qx qy qz qw, got 7");
-  expect_contains(after_writing("groundtruth.txt", "10 0 0 nan 0 0 0 1\n"), "groundtruth.txt:1: tz: ");
-  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 0\n"), "groundtruth.txt:1: quaternion");
+                  "groundtruth.txt:1: expected 8 columns or more: timestamp tx ty tz qx qy qz qw, got 7");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 inf 0 0 0 1\n"), "groundtruth.txt:1: tz: ");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 1e-9\n"), "groundtruth.txt:1: quaternion");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 0\n"),
+                  "groundtruth.txt:1: all 1 rows are of lost frames");
   expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 1\n9 0 0 0 0 0 0 1\n"),
                   "groundtruth.txt:2: time runs backwards by 1 s");
   expect_contains(after_writing("accelerometer.txt", "10 1 2\n"), "accelerometer.txt:1: expected 4 columns");
