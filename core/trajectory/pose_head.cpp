@@ -67,12 +67,17 @@ Result<void> check_decimal_points(std::string_view line, int number, const std::
               std::string(io::kDecimalCommaHint));
 }
 
-/// Names of a comment that cannot be those of the rows are dropped.
-Result<void> check_names(const std::filesystem::path& file, PoseHead& head) {
+/// Names of a comment that cannot be those of the rows are dropped, with a warning.
+Result<void> check_names(const std::filesystem::path& file, PoseHead& head,
+                         std::vector<std::string>& warnings) {
   if (!head.named || head.rows.empty() || head.names.size() == head.columns()) return {};
   if (head.names_are_comment) {
     const bool first_ones = head.names.size() < head.columns() && head.named->columns.stamp == 0;
-    if (!first_ones) head.named.reset();
+    if (first_ones) return {};
+    head.named.reset();
+    warnings.push_back(fmt::format(
+        "{}:{}: {} names of columns, but line {} has {} columns: names are not used", file.string(),
+        head.names_line, head.names.size(), head.rows.front().line, head.columns()));
     return {};
   }
   return fail(ErrorCode::data_corrupt,
@@ -101,7 +106,7 @@ std::optional<std::string> stamp_against(const PoseHead& head, std::size_t colum
 
 }  // namespace
 
-Result<PoseHead> read_pose_head(const std::filesystem::path& file) {
+Result<PoseHead> read_pose_head(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   PoseHead head;
   std::ifstream stream = io::input_file(file);
   std::string line;
@@ -125,7 +130,7 @@ Result<PoseHead> read_pose_head(const std::filesystem::path& file) {
       return tl::unexpected(points.error());
     head.rows.push_back({number, {fields.begin(), fields.end()}, text.find(',') != std::string_view::npos});
   }
-  if (auto checked = check_names(file, head); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_names(file, head, warnings); !checked) return tl::unexpected(checked.error());
   return head;
 }
 

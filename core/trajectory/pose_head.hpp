@@ -32,13 +32,14 @@ struct PoseHead {
 };
 
 /// Reads up to 20 rows and the lines before them. A comment that does not name all of a pose, or has another
-/// number of names than the first row has columns, is a comment; after a stamp as the first name, rows may
-/// have more columns than are named. A file that cannot be opened, has no rows or is no text gives no rows:
-/// readers of its rows report that.
+/// number of names than the first row has columns (a warning), is a comment; after a stamp as the first name,
+/// rows may have more columns than are named. A file that cannot be opened, has no rows or is no text gives
+/// no rows: readers of its rows report that.
 ///
 /// Errors data_corrupt name file:line: a first line of names without '#' that does not name all of a pose, or
 /// not each column; numbers with a decimal comma.
-[[nodiscard]] Result<PoseHead> read_pose_head(const std::filesystem::path& file);
+[[nodiscard]] Result<PoseHead> read_pose_head(const std::filesystem::path& file,
+                                              std::vector<std::string>& warnings);
 
 /// What is given about the unit of stamps, apart from names in the file.
 struct GivenUnit {

@@ -38,7 +38,7 @@ std::string tum_text(const Trajectory& trajectory) {
 
 Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                        Duplicates duplicates) {
-  const auto head = read_pose_head(file);
+  const auto head = read_pose_head(file, warnings);
   if (!head) return tl::unexpected(head.error());
   PoseLayout layout = layout_of(*head, {}, file, warnings);
   layout.unit = stamp_unit_of(*head, layout.columns, {}, file, warnings);

@@ -181,7 +181,7 @@ std::string kitti_text(const Trajectory& trajectory) {
 Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file, const TrajectoryReading& reading,
                                          std::vector<std::string>& warnings) {
   if (auto openable = check_can_be_opened(file); !openable) return tl::unexpected(openable.error());
-  const auto head = trajectory::read_pose_head(file);
+  const auto head = trajectory::read_pose_head(file, warnings);
   if (!head) return tl::unexpected(head.error());
   auto recognised = recognise_format(*head, reading, file, warnings);
   if (!recognised) return tl::unexpected(recognised.error());

@@ -160,6 +160,9 @@ TEST_F(TrajectoryFile, NamesSayWhichColumnsAreWhich) {
   const auto longer = read("# these are timestamp tx ty tz qw qx qy qz\n1 1 2 3 0 0 0 1\n");
   ASSERT_TRUE(longer) << longer.error().message;
   EXPECT_EQ((*longer)[0].T_world_camera.rotation.w(), 1) << "ten words are no names of eight columns";
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":1: 10 names of columns, but line 2 has 8 columns"), std::string::npos)
+      << warnings_[0];
   const auto last = read("# t x y z qw qx qy qz\n# t x y z qx qy qz qw\n1 1 2 3 0 0 0 1\n");
   ASSERT_TRUE(last);
   EXPECT_EQ((*last)[0].T_world_camera.rotation.w(), 1) << "the line above the rows counts";
