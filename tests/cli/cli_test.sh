@@ -882,6 +882,16 @@ check_meshes() {
     eval mesh truth.obj truth.obj --align trajectory --trajectories gt.txt gt.txt
   prints 'scale +the reconstruction times 0.001' "millimetres" eval mesh millimetres.obj truth.obj --scale 0.001
   prints '"surfreg_m": 0.0(1|09999)[0-9]*,' "JSON" eval mesh rec.obj truth.obj --json --samples vertices
+  { printf 'ply\nformat ascii 1.0\nelement vertex 4\n' && printf 'property float %s\n' x y z nx ny nz radius &&
+    printf 'end_header\n0 0 0.01 0 0 1 0.02\n4 0 0.01 0 0 1 0.02\n4 3 0.01 0 0 1 0.02\n0 3 0.01 0 0 1 0.02\n'; } >surfels.ply
+  prints 'reconstruction +surfels.ply: 4 surfels, 4 x 3 x 0 m' "the size of surfels" eval mesh surfels.ply truth.obj
+  prints 'samples +reconstruction: 4 vertices' "centres of surfels" eval mesh surfels.ply truth.obj --samples vertices
+  prints 'SurfReg +0.01 m' "SurfReg's score of surfels" eval mesh surfels.ply truth.obj
+  { grep ^v rec.obj && printf 'v 0 0 900\nv 0 0 -900\n' && grep ^f rec.obj; } >loose.obj
+  for samples in vertices 1000; do
+    prints 'max +0.01 ' "vertices of no triangle" eval mesh loose.obj truth.obj --samples $samples
+    grep -q '^warning: 2 of 9 vertices of the reconstruction belong to no triangle' stderr || complain "vertices of no triangle are not counted"
+  done
   checks=$((checks + 1))
   "$binary" eval mesh rec.obj truth.obj --colored colored.ply >stdout 2>stderr || complain "a coloured mesh: exit code $?"
   grep -q 'yellow at 0.05 m' stderr || complain "a coloured mesh: its range is not told"
