@@ -29,6 +29,7 @@ tl::expected<StagedFile, std::error_code> StagedFile::create(const fs::path& pla
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) return tl::unexpected(std::error_code(errno, std::generic_category()));
     close(descriptor);
+    file.mark_ = TemporaryMark(TemporaryMark::Kind::file, hidden);
     file.path_ = hidden;
     file.final_ = final_place;
     file.lock_ = lock_place(hidden);
@@ -41,7 +42,8 @@ StagedFile::StagedFile(StagedFile&& other) noexcept
     : place_(std::move(other.place_)),
       path_(std::move(other.path_)),
       final_(std::exchange(other.final_, {})),
-      lock_(std::exchange(other.lock_, -1)) {}
+      lock_(std::exchange(other.lock_, -1)),
+      mark_(std::move(other.mark_)) {}
 
 StagedFile::~StagedFile() {
   std::error_code ignored;

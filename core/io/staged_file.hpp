@@ -6,6 +6,8 @@
 #include <system_error>
 #include <tl/expected.hpp>
 
+#include "core/io/temporary_mark.hpp"
+
 namespace fusebench::io {
 
 /// A file that is being written. Several writers of one file, also in other processes, do not conflict: the
@@ -38,6 +40,7 @@ class StagedFile {
   std::filesystem::path path_;
   std::filesystem::path final_;  ///< empty if path_ needs no other name
   int lock_ = -1;                ///< -1: the file system has none
+  TemporaryMark mark_;
 };
 
 /// All of a file as a StagedFile.

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/io/fingerprint.hpp"
+#include "core/io/temporary_mark.hpp"
 #include "eval/process/child_processes.hpp"
 #include "eval/text/text_file.hpp"
 
@@ -271,9 +272,13 @@ Result<void> draw_figure(const std::string& script, const std::filesystem::path&
                          const std::string& name, FigureFormat format) {
   const std::filesystem::path file = folder / (name + ".gp");
   if (auto written = text::write_text_file(file, script); !written) return written;
-  auto drawn = run_gnuplot(file);
+  const std::filesystem::path figure = folder / figure_file(name, format);
   std::error_code ignored;
-  if (!drawn) std::filesystem::remove(folder / figure_file(name, format), ignored);  // half is worth nothing
+  const auto is = std::filesystem::symlink_status(figure, ignored).type();
+  if (is == std::filesystem::file_type::symlink) std::filesystem::remove(figure, ignored);
+  const io::TemporaryMark half_drawn(io::TemporaryMark::Kind::file, figure);
+  auto drawn = run_gnuplot(file);
+  if (!drawn) std::filesystem::remove(figure, ignored);
   return drawn;
 }
 

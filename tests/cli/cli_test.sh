@@ -439,6 +439,27 @@ stopped() {
   if [[ -s stdout ]]; then complain "$1, SIG$signal: a result on standard output"; fi
 }
 
+# ended SIGNAL SECONDS ARGUMENT...: a signal after so many seconds of work ends the program within a second, with one
+# message and nothing left.
+ended() {
+  local signal=$1 after=$2 status process from took
+  shift 2
+  checks=$((checks + 1))
+  "$binary" "$@" >stdout 2>stderr &
+  process=$!
+  sleep "$after"
+  from=${EPOCHREALTIME/./}
+  kill -s "$signal" "$process" || complain "$1 $2, SIG$signal: it had ended before"
+  wait "$process"
+  status=$?
+  took=$((${EPOCHREALTIME/./} - from))
+  if ((status != 130)); then complain "$1 $2, SIG$signal: exit code $status instead of 130"; fi
+  if ((took > 1000000)); then complain "$1 $2, SIG$signal: took $took us"; fi
+  [[ $(grep -c '^error: stopped by the user' stderr) == 1 ]] || complain "$1 $2, SIG$signal: not exactly one message"
+  if [[ -s stdout ]]; then complain "$1 $2, SIG$signal: a result on standard output"; fi
+  if [[ -n $(find kept -mindepth 1 -not -path kept/file) ]]; then complain "$1 $2, SIG$signal: left $(find kept | tr '\n' ' ')"; fi
+}
+
 check_interrupt() {
   fresh_copy
   mkdir -p kept data
@@ -449,6 +470,12 @@ check_interrupt() {
   stopped TERM run data/freiburg1_copy --variant no-imu
   stopped INT bench suite.toml --data data
   stopped INT bench suite.toml --data data -j 2
+  corner_obj 1 0 >truth.obj
+  corner_obj 1 0.01 >rec.obj
+  for signal in INT TERM; do
+    ended $signal 0.5 eval mesh rec.obj truth.obj --samples 50000000 --threads 1 --colored kept/colored.ply
+    ended $signal 1 simulate --preset fast --duration 60 --out kept/new/simulated
+  done
 }
 
 # The part of a record that repeats: all before the timing, and no thread count (the provenance comes after it).
