@@ -933,8 +933,8 @@ check_meshes() {
   "$binary" eval mesh rec.obj truth.obj --colored again.ply >stdout 2>stderr && cmp -s again.ply colored.ply &&
     [[ ! -e .again.ply.77.tmp ]] || complain "--colored leaves what a killed one left"
   printf old >kept.ply
-  "$binary" eval mesh rec.obj truth.obj --colored again_link.ply >stdout 2>stderr && [[ -L again_link.ply ]] &&
-    cmp -s kept.ply colored.ply || complain "--colored does not follow a link"
+  "$binary" eval mesh rec.obj truth.obj --colored again_link.ply >stdout 2>stderr && [[ ! -L again_link.ply ]] &&
+    cmp -s again_link.ply colored.ply && [[ $(cat kept.ply) == old ]] || complain "--colored changes the target of a link"
 
   awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
   refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \
