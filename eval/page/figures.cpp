@@ -15,6 +15,7 @@
 #include "core/io/fingerprint.hpp"
 #include "core/io/temporary_mark.hpp"
 #include "eval/process/child_processes.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::page {
@@ -218,7 +219,7 @@ Result<void> run_gnuplot(const std::filesystem::path& script) {
 
 std::string gnuplot_text(std::string_view text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : text::without_controls(text, "\n")) {
     if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
     result += c == '\n' ? ' ' : c;
   }

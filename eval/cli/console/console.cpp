@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "eval/text/text_layout.hpp"
+#include "eval/text/control_characters.hpp"
 
 namespace fusebench::cli::console {
 
