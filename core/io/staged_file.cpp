@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <iterator>
 #include <utility>
 
 #include "core/io/abandoned.hpp"
@@ -14,23 +15,32 @@ namespace fusebench::io {
 
 namespace fs = std::filesystem;
 
+bool is_replaced_link(const fs::path& place) {
+  std::error_code error;
+  if (!fs::is_symlink(place, error) || fs::is_directory(place, error)) return false;
+  const fs::path folder = fs::canonical(place.has_parent_path() ? place.parent_path() : ".", error);
+  const auto top = folder.begin() == folder.end() ? folder.end() : std::next(folder.begin());
+  return top == folder.end() || (*top != "dev" && *top != "proc");
+}
+
 tl::expected<StagedFile, std::error_code> StagedFile::create(const fs::path& place) {
   StagedFile file;
   file.place_ = place;
   file.path_ = place;
   std::error_code error;
-  if (fs::exists(place, error) && !fs::is_regular_file(place, error)) return file;
-  const fs::path final_place = fs::is_symlink(place, error) ? fs::canonical(place, error) : place;
-  if (final_place.empty()) return tl::unexpected(error);
-  remove_abandoned_of(final_place);
+  const fs::file_type is = fs::symlink_status(place, error).type();
+  const bool has_plain_place = is == fs::file_type::regular || is == fs::file_type::not_found;
+  if (!has_plain_place && !is_replaced_link(place)) return file;
+  remove_abandoned_of(place);
   for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
-    const fs::path hidden = hidden_sibling(final_place, attempt);
+    const fs::path hidden = hidden_sibling(place, attempt);
     const int descriptor = open(hidden.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) return tl::unexpected(std::error_code(errno, std::generic_category()));
     close(descriptor);
+    file.mark_ = TemporaryMark(TemporaryMark::Kind::file, hidden);
     file.path_ = hidden;
-    file.final_ = final_place;
+    file.final_ = place;
     file.lock_ = lock_place(hidden);
     return file;
   }
@@ -41,7 +51,8 @@ StagedFile::StagedFile(StagedFile&& other) noexcept
     : place_(std::move(other.place_)),
       path_(std::move(other.path_)),
       final_(std::exchange(other.final_, {})),
-      lock_(std::exchange(other.lock_, -1)) {}
+      lock_(std::exchange(other.lock_, -1)),
+      mark_(std::move(other.mark_)) {}
 
 StagedFile::~StagedFile() {
   std::error_code ignored;

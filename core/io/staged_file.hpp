@@ -6,6 +6,8 @@
 #include <system_error>
 #include <tl/expected.hpp>
 
+#include "core/io/temporary_mark.hpp"
+
 namespace fusebench::io {
 
 /// A file that is being written. Several writers of one file, also in other processes, do not conflict: the
@@ -13,8 +15,9 @@ namespace fusebench::io {
 /// nothing is left of a file that was not committed.
 class StagedFile {
  public:
-  /// An empty file beside the place, whose folder must be there. A link is followed; what is there and no
-  /// plain file (a device, a pipe) is written to as it is. What the operating system said if that failed.
+  /// An empty file beside the place, whose folder must be there. A symbolic link is replaced, whatever it
+  /// leads to: its target may belong to somebody else. A device, a pipe, a folder, and a link in /dev or
+  /// /proc (standard output) are opened as they are. What the operating system said if that failed.
   [[nodiscard]] static tl::expected<StagedFile, std::error_code> create(const std::filesystem::path& place);
 
   StagedFile(StagedFile&& other) noexcept;
@@ -38,7 +41,11 @@ class StagedFile {
   std::filesystem::path path_;
   std::filesystem::path final_;  ///< empty if path_ needs no other name
   int lock_ = -1;                ///< -1: the file system has none
+  TemporaryMark mark_;
 };
+
+/// Whether a file of this name would replace a symbolic link: not one to a folder, and not in /dev or /proc.
+[[nodiscard]] bool is_replaced_link(const std::filesystem::path& place);
 
 /// All of a file as a StagedFile.
 [[nodiscard]] std::error_code write_file_atomically(const std::filesystem::path& file, std::string_view text);

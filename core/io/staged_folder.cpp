@@ -112,6 +112,7 @@ Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
       folder.lock_ = lock_place(temporary);
       // Another process regards the empty folder as abandoned and is removing it.
       if (folder.lock_ < 0 && errno == EWOULDBLOCK) continue;
+      folder.mark_temporary();
       if (fs::create_directory(folder.path(), error)) return folder;
     }
     // Another process may just have removed a parent that it created, or the folder of this name.
@@ -127,7 +128,14 @@ StagedFolder::StagedFolder(StagedFolder&& other) noexcept
     : final_(std::move(other.final_)),
       temporary_(std::exchange(other.temporary_, {})),
       lock_(std::exchange(other.lock_, -1)),
-      created_(std::exchange(other.created_, {})) {}
+      created_(std::exchange(other.created_, {})),
+      marks_(std::exchange(other.marks_, {})) {}
+
+void StagedFolder::mark_temporary() {
+  marks_.clear();
+  marks_.emplace_back(TemporaryMark::Kind::tree, temporary_);
+  for (const fs::path& parent : created_) marks_.emplace_back(TemporaryMark::Kind::empty_folder, parent);
+}
 
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
@@ -146,6 +154,7 @@ Result<void> StagedFolder::commit() {
   const fs::path old = temporary_ / "old";
   std::error_code error = sync_tree(path());
   if (error) return io_error(final_, error);
+  marks_.clear();  // from here on the temporary folder may hold the only copy of the replaced one
   for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
     fs::rename(final_, old, error);
     if (error && error != std::errc::no_such_file_or_directory) break;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/io/temporary_mark.hpp"
 
 namespace fusebench::io {
 
@@ -35,12 +36,14 @@ class StagedFolder {
 
  private:
   StagedFolder() = default;
+  void mark_temporary();
 
   std::filesystem::path final_;
   // Nobody else's: holds "new" and, on commit, "old", the folder that is replaced. Empty once committed.
   std::filesystem::path temporary_;
   int lock_ = -1;                               // of the temporary folder, for as long as this process lives
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
+  std::vector<TemporaryMark> marks_;            // of the temporary folder and the parents
 };
 
 /// Syncs the names on a path to the disk: its folder, and then those above, each once. Without them, what is

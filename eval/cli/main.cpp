@@ -10,6 +10,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/console/usage_error.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -104,7 +105,6 @@ int command_line(int given_count, const char* const* given) {
   } catch (const CLI::ParseError& error) {
     return finish(console::usage_error(app, *arguments, error));
   }
-  console::install_stop_handler();
   return run_verb(verbs);
 }
 
@@ -114,6 +114,7 @@ int command_line(int given_count, const char* const* given) {
 
 int main(int argc, char** argv) {
   fusebench::cli::console::prepare_standard_streams();
+  fusebench::cli::console::handle_stop_signals();
   try {
     const int code = fusebench::cli::command_line(argc, argv);
     return fusebench::cli::console::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);

@@ -237,6 +237,19 @@ void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan
   }
 }
 
+/// A filter that no run meets, since other filters leave out all that it would keep.
+void warn_of_idle_filters(const std::vector<std::string>& only, BatchPlan& plan) {
+  if (plan.jobs.empty() || !plan.excluded.empty() || !plan.absent.empty()) return;
+  for (const std::string& filter : only) {
+    if (std::ranges::any_of(plan.jobs, [&](const BatchJob& job) {
+          return suites::wanted({filter}, job.recording.filename().string(), job.split, job.variant);
+        }))
+      continue;
+    plan.warnings.push_back(
+        fmt::format("--only {}: no run meets it together with the other filters", filter));
+  }
+}
+
 }  // namespace
 
 std::string to_string(const BatchJob& job) {
@@ -283,6 +296,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
       return tl::unexpected(added.error());
     multiply(common, jobs, plan);
   }
+  warn_of_idle_filters(options.only, plan);
   std::set<std::string> unused;
   if (suite.replicates > 1) {
     for (const auto& program : common.programs)

@@ -50,7 +50,7 @@ struct ExcludedRun {
 struct BatchPlan {
   std::vector<BatchJob> jobs;
   std::vector<ExcludedRun> excluded;
-  std::vector<std::string> warnings;  ///< exclusions that meet no run
+  std::vector<std::string> warnings;  ///< such as exclusions and filters that no run meets
   /// "NAME: where to get it" of each absent recording, "NAME: reason" of each external program that cannot
   /// run
   std::vector<std::string> absent = {};
@@ -62,7 +62,7 @@ struct BatchPlan {
 /// programs, and asks each that is wanted for its version. Errors: those of read_external_program();
 /// data_missing (a recording or a trajectory that is not there), configuration (--set, a recording named
 /// twice, a point of the sweep that no run can have, an exclusion of a variant that there is not), usage
-/// (--only that names no key or leaves nothing).
+/// (--only that names no key, recording or variant, or leaves nothing).
 [[nodiscard]] Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options);
 
 }  // namespace fusebench::engine

@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAround(100);
 constexpr std::chrono::milliseconds kWaitForOthers(500);
-constexpr std::chrono::seconds kGrace(10);  // for runs that are asked to stop
+constexpr std::chrono::milliseconds kGrace(500);  // for runs that are asked to stop
 
 struct RunningJob {
   RunningJob(std::size_t of, run::PreparedRun prepared, std::optional<RunClaim> held,

@@ -43,7 +43,7 @@ Result<std::optional<RunClaim>> RunClaim::take(const fs::path& out, const std::s
   fs::create_directories(folder, error);
   const fs::path file = folder / name;
   while (true) {
-    const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0) {
       return fail(ErrorCode::io,
                   fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)),
@@ -56,7 +56,7 @@ Result<std::optional<RunClaim>> RunClaim::take(const fs::path& out, const std::s
     // Its last holder may have removed the file between our opening and locking it.
     struct stat ours {};
     struct stat there {};
-    const bool same = fstat(descriptor, &ours) == 0 && stat(file.c_str(), &there) == 0 &&
+    const bool same = fstat(descriptor, &ours) == 0 && lstat(file.c_str(), &there) == 0 &&
                       ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
     if (same) return std::optional<RunClaim>(RunClaim(file, descriptor));
     close(descriptor);

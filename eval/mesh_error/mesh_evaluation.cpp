@@ -15,9 +15,13 @@ namespace {
 
 MeshShape shape_of(const PreciseMesh& mesh) {
   Eigen::AlignedBox3d box;
-  for (const Vector3d& vertex : mesh.vertices) box.extend(vertex);
-  return {mesh.vertices.size(), mesh.triangles.size(),
-          mesh.vertices.empty() ? Vector3d(0, 0, 0) : Vector3d(box.sizes())};
+  const std::vector<Vector3d> vertices = surface_vertices(mesh);
+  for (const Vector3d& vertex : vertices) box.extend(vertex);
+  return {.vertices = vertices.size(),
+          .unused_vertices = mesh.vertices.size() - vertices.size(),
+          .triangles = mesh.triangles.size(),
+          .surfels = !mesh.radii_m.empty(),
+          .extent_m = box.sizes()};
 }
 
 /// Millimetres for metres are the usual mistake, and give numbers that look like any others.
@@ -106,10 +110,9 @@ Result<void> check_observed(const MeshComparison& comparison, double least) {
 SurfregScore surfreg_of(const PreciseMesh& reconstruction, const PreciseMesh& truth,
                         const SE3& T_truth_reconstruction, const Workers& workers) {
   std::vector<Vector3d> vertices_truth;
-  vertices_truth.reserve(reconstruction.vertices.size());
-  for (const Vector3d& vertex : reconstruction.vertices)
+  for (const Vector3d& vertex : surface_vertices(reconstruction))
     vertices_truth.push_back(T_truth_reconstruction * vertex);
-  return surfreg_score(vertices_truth, VertexTree(truth.vertices), workers);
+  return surfreg_score(vertices_truth, VertexTree(surface_vertices(truth)), workers);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/mesh_error/mesh_sampling.hpp"
 #include "eval/mesh_error/surface_registration.hpp"
 #include "eval/mesh_error/vertex_tree.hpp"
 
@@ -28,9 +29,11 @@ struct MeshRequest {
 
 /// What a mesh is, in words of size.
 struct MeshShape {
-  std::size_t vertices = 0;
+  std::size_t vertices = 0;         ///< of the surface, see surface_vertices()
+  std::size_t unused_vertices = 0;  ///< that no triangle names; they are not measured
   std::size_t triangles = 0;
-  Vector3d extent_m = Vector3d::Zero();  ///< of the box around its vertices
+  bool surfels = false;                  ///< each vertex is a disc
+  Vector3d extent_m = Vector3d::Zero();  ///< of the box around its surface vertices
 };
 
 struct MeshEvaluation {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/mesh_error/surfel_discs.hpp"
+
 namespace fusebench::mesh_error {
 
 namespace {
@@ -24,6 +26,10 @@ MeshDistances summary_of(std::vector<double>& values) {
 double share_below(std::span<const double> sorted, double limit) {
   const auto end = std::ranges::lower_bound(sorted, limit);
   return static_cast<double>(end - sorted.begin()) / static_cast<double>(sorted.size());
+}
+
+TriangleTree tree_of(const PreciseMesh& mesh, const Workers& workers) {
+  return mesh.radii_m.empty() ? TriangleTree(mesh, workers) : TriangleTree(with_discs(mesh), workers);
 }
 
 }  // namespace
@@ -48,6 +54,10 @@ double percentile(std::span<const double> sorted, double share) {
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
+
+MeshComparison::MeshComparison(const PreciseMesh& reconstruction, const PreciseMesh& truth,
+                               const Workers& workers)
+    : reconstruction_(tree_of(reconstruction, workers)), truth_(tree_of(truth, workers)) {}
 
 Result<MeshComparison> MeshComparison::create(const PreciseMesh& reconstruction, const PreciseMesh& truth,
                                               const std::optional<MeshViews>& views,

@@ -66,7 +66,8 @@ enum class TruthPart { observed, all };
 [[nodiscard]] std::vector<double> distances_m(std::span<const Vector3d> points, const SE3& T_surface_points,
                                               const TriangleTree& surface, const Workers& workers);
 
-/// Two meshes, ready to be compared under any alignment.
+/// Two meshes, ready to be compared under any alignment. Distances to surfels are those to the triangles of
+/// with_discs().
 class MeshComparison {
  public:
   /// Without views all of the truth is taken as observed. Errors data_corrupt: those of check_mesh and
@@ -86,8 +87,7 @@ class MeshComparison {
   [[nodiscard]] std::size_t reconstruction_samples() const { return reconstruction_points_.size(); }
 
  private:
-  MeshComparison(const PreciseMesh& reconstruction, const PreciseMesh& truth, const Workers& workers)
-      : reconstruction_(reconstruction, workers), truth_(truth, workers) {}
+  MeshComparison(const PreciseMesh& reconstruction, const PreciseMesh& truth, const Workers& workers);
 
   [[nodiscard]] double ghost_share(std::span<const double> to_truth_m, const SE3& T_truth_reconstruction,
                                    const Workers& workers) const;

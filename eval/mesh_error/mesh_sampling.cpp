@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/trajectory/trajectory_rows.hpp"
+#include "eval/mesh_error/surfel_discs.hpp"
 
 namespace fusebench::mesh_error {
 
@@ -15,38 +16,16 @@ namespace {
 /// In [0, 1), the same with any library.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1.0p-53; }
 
-}  // namespace
-
-std::string_view to_string(MeshSamples samples) {
-  return samples == MeshSamples::vertices ? "vertices" : "area";
+/// For each vertex whether it is a part of the surface.
+std::vector<bool> on_surface(const PreciseMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), !mesh.radii_m.empty());
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) used[vertex] = true;
+  return used;
 }
 
-Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
-  if (mesh.triangles.empty()) {
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{} has no triangles ({} vertices)", what, mesh.vertices.size()),
-                "distances are measured to surfaces, not to points");
-  }
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (const auto fault = trajectory::coordinate_fault("is at", mesh.vertices[i]))
-      return fail(ErrorCode::data_corrupt, fmt::format("{}: vertex {} {}", what, i, *fault));
-  }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);
-    if (largest >= mesh.vertices.size()) {
-      return fail(ErrorCode::data_corrupt, fmt::format("{}: triangle {} names vertex {} (there are {})", what,
-                                                       i, largest, mesh.vertices.size()));
-    }
-  }
-  return {};
-}
-
-Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh, const MeshSampling& sampling) {
+Result<std::vector<Vector3d>> area_samples(const PreciseMesh& mesh, const MeshSampling& sampling) {
   std::vector<Vector3d> points;
-  if (sampling.from == MeshSamples::vertices) {
-    points = mesh.vertices;
-    return points;
-  }
   std::vector<double> area_until;
   double area = 0;
   const auto corner = [&](std::size_t triangle, std::size_t which) -> Vector3d {
@@ -69,6 +48,49 @@ Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh, const MeshSam
                         root * share * corner(triangle, 2));
   }
   return points;
+}
+
+}  // namespace
+
+std::string_view to_string(MeshSamples samples) {
+  return samples == MeshSamples::vertices ? "vertices" : "area";
+}
+
+Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
+  if (mesh.triangles.empty() && mesh.radii_m.empty()) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{} has no triangles ({} vertices)", what, mesh.vertices.size()),
+                "distances are measured to surfaces, not to points; points with normals and a radius are "
+                "accepted as surfels");
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);
+    if (largest >= mesh.vertices.size()) {
+      return fail(ErrorCode::data_corrupt, fmt::format("{}: triangle {} names vertex {} (there are {})", what,
+                                                       i, largest, mesh.vertices.size()));
+    }
+  }
+  const std::vector<bool> used = on_surface(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!used[i]) continue;
+    if (const auto fault = trajectory::coordinate_fault("is at", mesh.vertices[i]))
+      return fail(ErrorCode::data_corrupt, fmt::format("{}: vertex {} {}", what, i, *fault));
+  }
+  return {};
+}
+
+std::vector<Vector3d> surface_vertices(const PreciseMesh& mesh) {
+  const std::vector<bool> used = on_surface(mesh);
+  std::vector<Vector3d> points;
+  points.reserve(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (used[i]) points.push_back(mesh.vertices[i]);
+  return points;
+}
+
+Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh, const MeshSampling& sampling) {
+  if (sampling.from == MeshSamples::vertices) return surface_vertices(mesh);
+  return mesh.radii_m.empty() ? area_samples(mesh, sampling) : area_samples(with_discs(mesh), sampling);
 }
 
 }  // namespace fusebench::mesh_error

@@ -21,8 +21,15 @@ using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::vector<std::string>>;
 
 std::string shape_text(const std::string& file, const mesh_error::MeshShape& shape) {
-  return fmt::format("{}: {} vertices, {} triangles, {:.4g} x {:.4g} x {:.4g} m", file, shape.vertices,
-                     shape.triangles, shape.extent_m.x(), shape.extent_m.y(), shape.extent_m.z());
+  const std::string parts =
+      shape.surfels ? fmt::format("{} surfels", shape.vertices)
+                    : fmt::format("{} vertices{}, {} triangles", shape.vertices,
+                                  shape.unused_vertices == 0
+                                      ? ""
+                                      : fmt::format(" (and {} of no triangle)", shape.unused_vertices),
+                                  shape.triangles);
+  return fmt::format("{}: {}, {:.4g} x {:.4g} x {:.4g} m", file, parts, shape.extent_m.x(),
+                     shape.extent_m.y(), shape.extent_m.z());
 }
 
 std::string alignment_text(const mesh_error::MeshEvaluation& e, const mesh_error::MeshRequest& request) {
@@ -109,7 +116,9 @@ std::string surfreg_text(const mesh_error::SurfregScore& score) {
 Json json_of(const std::string& file, const mesh_error::MeshShape& shape) {
   return {{"file", file},
           {"vertices", shape.vertices},
+          {"unused_vertices", shape.unused_vertices},
           {"triangles", shape.triangles},
+          {"surfels", shape.surfels},
           {"extent_m", {shape.extent_m.x(), shape.extent_m.y(), shape.extent_m.z()}}};
 }
 

@@ -13,7 +13,9 @@
 #include <thread>
 
 #include "core/io/fingerprint.hpp"
+#include "core/io/temporary_mark.hpp"
 #include "eval/process/child_processes.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::page {
@@ -217,7 +219,7 @@ Result<void> run_gnuplot(const std::filesystem::path& script) {
 
 std::string gnuplot_text(std::string_view text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : text::without_controls(text, "\n")) {
     if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
     result += c == '\n' ? ' ' : c;
   }
@@ -271,9 +273,13 @@ Result<void> draw_figure(const std::string& script, const std::filesystem::path&
                          const std::string& name, FigureFormat format) {
   const std::filesystem::path file = folder / (name + ".gp");
   if (auto written = text::write_text_file(file, script); !written) return written;
-  auto drawn = run_gnuplot(file);
+  const std::filesystem::path figure = folder / figure_file(name, format);
   std::error_code ignored;
-  if (!drawn) std::filesystem::remove(folder / figure_file(name, format), ignored);  // half is worth nothing
+  const auto is = std::filesystem::symlink_status(figure, ignored).type();
+  if (is == std::filesystem::file_type::symlink) std::filesystem::remove(figure, ignored);
+  const io::TemporaryMark half_drawn(io::TemporaryMark::Kind::file, figure);
+  auto drawn = run_gnuplot(file);
+  if (!drawn) std::filesystem::remove(figure, ignored);
   return drawn;
 }
 

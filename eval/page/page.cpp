@@ -7,6 +7,7 @@
 
 #include "eval/page/drawn_data.hpp"
 #include "eval/page/page_assets.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/markup_text.hpp"
 
@@ -14,16 +15,25 @@ namespace fusebench::page {
 
 namespace {
 
-std::string escaped(std::string_view text) { return text::with_entities(text, "&<>\""); }
+std::string escaped(std::string_view text) {
+  return text::with_entities(text::without_controls(text, "\n"), "&<>\"");
+}
 
-/// JSON that can neither end the script element that holds it nor begin another one.
+/// JSON that can neither end the script element that holds it nor begin another one. Control characters are
+/// shown by their numbers.
 std::string script_safe(const Json& json) {
+  const std::string text = text::json_text(json, -1);
   std::string safe;
-  for (const char c : text::json_text(json, -1)) {
-    if (c == '<') {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool escape = text[i] == '\\';  // of the next character, which is there
+    if (text[i] == '<') {
       safe += "\\u003c";
+    } else if (escape && text[i + 1] == 'u') {
+      safe += "\\\\u";
+      ++i;
     } else {
-      safe += c;
+      safe += text[i];
+      if (escape) safe += text[++i];
     }
   }
   return safe;

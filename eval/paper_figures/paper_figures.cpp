@@ -46,6 +46,7 @@ std::vector<Loaded> load_all(std::span<const RecordingRuns> recordings, WrittenF
       one.series.push_back(run_charts::series_of(run, run.record.variant));
       for (const std::string& warning : one.series.back().warnings) written.warnings.push_back(warning);
     }
+    run_charts::colour_by_variant(one.series);
   }
   return loaded;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -35,6 +36,7 @@ Json json_of(const RecordedRecording& recording) {
                {"truth", recording.truth},
                {"prepared", recording.prepared},
                {"notes", recording.notes}};
+  if (recording.start_ns) json["start_ns"] = *recording.start_ns;
   if (recording.camera) json["camera"] = json_of_camera(*recording.camera);
   return json;
 }
@@ -52,6 +54,13 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.truth = json.value("truth", std::string());
   recording.prepared = json.value("prepared", false);
   recording.notes = json.at("notes").get<std::vector<std::string>>();
+  if (const auto start = json.find("start_ns"); start != json.end()) {
+    constexpr std::int64_t kFarthest_ns = std::numeric_limits<std::int64_t>::max() / 2;
+    recording.start_ns = start->get<std::int64_t>();
+    if (*recording.start_ns > kFarthest_ns || *recording.start_ns < -kFarthest_ns)
+      throw std::invalid_argument(fmt::format("recording.start_ns = {} (allowed: -{} .. {})",
+                                              *recording.start_ns, kFarthest_ns, kFarthest_ns));
+  }
   if (const auto camera = json.find("camera"); camera != json.end()) recording.camera = camera_of(*camera);
 }
 

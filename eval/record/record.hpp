@@ -102,6 +102,7 @@ struct RecordedRecording {
   std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
   std::optional<RecordedCamera> camera = {};  ///< none in a record that is older
   bool prepared = false;  ///< constants of its sensors were measured first: camera and notes say which
+  std::optional<std::int64_t> start_ns = {};  ///< stamp of the first of these frames; none in an older record
 };
 
 /// In the order of kStateParts.

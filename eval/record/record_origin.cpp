@@ -52,7 +52,8 @@ RecordedRecording recorded_recording(const recording::Recording& recording,
           .imu_note = recording.imu_note,
           .truth = std::string(truth_word(recording)),
           .notes = reading_notes(recording, folder),
-          .camera = recorded_camera(recording)};
+          .camera = recorded_camera(recording),
+          .start_ns = recording.frames.front().timestamp_ns};
 }
 
 RecordedProvenance provenance_here(int threads) {

@@ -9,7 +9,6 @@
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "core/trajectory/trajectory.hpp"
-#include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
@@ -196,8 +195,8 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   mesh_error::MeshErrorOptions options;
   options.reconstruction.count = kReconstructionSamples;
   options.truth.count = kTruthSamples;
-  const PreciseMesh surface = mesh_error::with_discs(output.mesh.cast<double>());
-  const auto comparison = mesh_error::MeshComparison::create(surface, *truth, *views, options, workers);
+  const auto comparison =
+      mesh_error::MeshComparison::create(output.mesh.cast<double>(), *truth, *views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
   const auto aligned = trajectory_error::align_poses(cameras.reference, cameras.estimate);
   if (!aligned) return tl::unexpected(aligned.error());

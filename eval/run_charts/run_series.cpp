@@ -7,6 +7,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/page/series_colours.hpp"
 #include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run_files/record_files.hpp"
 
@@ -69,6 +70,14 @@ std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory&
   return poses;
 }
 
+/// The ground truth is the last resort: it begins before the first image.
+std::int64_t start_of(const record::RunRecord& record, const RunSeries& series, const Trajectory& estimate) {
+  if (record.recording.start_ns) return *record.recording.start_ns;
+  if (!series.frames.empty()) return series.frames.front().timestamp_ns;
+  if (!estimate.empty()) return estimate.front().timestamp_ns;
+  return series.truth.empty() ? 0 : series.truth.front().timestamp_ns;
+}
+
 }  // namespace
 
 RunSeries series_of(const run_files::FoundRun& run, std::string label) {
@@ -92,11 +101,7 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   series.truth = on_clock_of(run.record.metrics, truth);
   const Trajectory estimate = trajectory_of(run, "trajectory.tum", series.warnings);
   if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();
-  if (!series.frames.empty()) {
-    series.start_ns = series.frames.front().timestamp_ns;
-  } else if (!series.truth.empty() || !estimate.empty()) {
-    series.start_ns = (series.truth.empty() ? estimate : series.truth).front().timestamp_ns;
-  }
+  series.start_ns = start_of(run.record, series, estimate);
   series.nees = rows_of(run, "nees.csv", run_files::read_nees_table, series.warnings);
   series.candidates = rows_of(run, "loops.csv", run_files::read_candidate_table, series.warnings);
   series.places = rows_of(run, "places.csv", run_files::read_place_table, series.warnings);
@@ -108,6 +113,16 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
         compared(revised, on_clock_of(*run.record.final_metrics, truth), run.record.final_metrics->ate);
   }
   return series;
+}
+
+void colour_by_variant(std::span<RunSeries> series) {
+  std::vector<page::ColouredName> names;
+  for (const RunSeries& one : series) {
+    const std::string& variant = one.run->record.variant;
+    names.push_back({variant, run_files::variant_rank(variant)});
+  }
+  const std::vector<std::size_t> colours = page::series_colours(names);
+  for (std::size_t i = 0; i < series.size(); ++i) series[i].colour = colours[i];
 }
 
 }  // namespace fusebench::run_charts

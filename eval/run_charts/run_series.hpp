@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct RunSeries {
   std::string label;       ///< the variant, with the run's name if there are several
   std::size_t colour = 1;  ///< of its curves, of the style's: one for a variant on all of a page
   std::vector<run_files::FrameTableRow> frames;  ///< none of an imported run
-  std::int64_t start_ns = 0;                     ///< of the first frame, or the first pose that is known
+  std::int64_t start_ns = 0;                     ///< of the first image, which is time 0 of every chart
   std::vector<ComparedPose> poses;
   std::vector<ComparedPose> final_poses;  ///< as the system revised them at the end; none if it did not
   std::vector<run_files::CandidateRow> candidates;  ///< of loops; none of a run that did not look for them
@@ -46,5 +47,8 @@ struct RunSeries {
 /// Reads the tables and trajectories of a run; what is not there or not readable stays empty, with a warning
 /// where it should be there.
 [[nodiscard]] RunSeries series_of(const run_files::FoundRun& run, std::string label);
+
+/// Gives each series the colour that its variant has on every page; no two variants have the same.
+void colour_by_variant(std::span<RunSeries> series);
 
 }  // namespace fusebench::run_charts

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <utility>
 
 #include "core/base/nearest_name.hpp"
 #include "eval/suites/suite_simulations.hpp"
@@ -25,6 +27,31 @@ bool suits_one(const OnlyFilters& only, std::string_view key, const Suits& suits
   return !asked;
 }
 
+/// Whether the name of a recording, or the known beginning of it ("begin*"), contains the text.
+bool name_contains(std::string_view name, std::string_view text) {
+  if (name.ends_with('*')) name.remove_suffix(1);
+  return name.find(text) != std::string_view::npos;
+}
+
+/// names: of the things that filters of this key choose among. `matches`: whether a name suits a value.
+template <class Matches>
+Result<void> check_names(const OnlyFilters& only, std::string_view key, const std::string& suite,
+                         std::vector<std::string> names, const Matches& matches) {
+  std::ranges::sort(names);
+  const auto repeated = std::ranges::unique(names);
+  names.erase(repeated.begin(), repeated.end());
+  for (const std::string& filter : only) {
+    if (!filter.starts_with(key) || filter.size() == key.size() || filter[key.size()] != '=') continue;
+    const std::string value = filter.substr(key.size() + 1);
+    if (std::ranges::any_of(names, [&](const std::string& name) { return matches(name, value); })) continue;
+    return fail(
+        ErrorCode::usage,
+        fmt::format("--only {}: suite '{}' has no such {}{}", filter, suite, key, nearest_hint(value, names)),
+        names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", ")));
+  }
+  return {};
+}
+
 }  // namespace
 
 bool variant_may_be_wanted(const OnlyFilters& only, std::string_view variant) {
@@ -32,9 +59,7 @@ bool variant_may_be_wanted(const OnlyFilters& only, std::string_view variant) {
 }
 
 bool recording_may_be_wanted(const OnlyFilters& only, std::string_view name) {
-  if (name.ends_with('*')) name.remove_suffix(1);
-  return suits_one(
-      only, "recording=", [&](std::string_view value) { return name.find(value) != std::string_view::npos; });
+  return suits_one(only, "recording=", [&](std::string_view value) { return name_contains(name, value); });
 }
 
 Result<void> check_filters(const OnlyFilters& only) {
@@ -63,20 +88,12 @@ bool wanted(const OnlyFilters& only, const std::string& recording, const std::st
 
 Result<void> check_variants(const OnlyFilters& only, const std::string& suite,
                             std::vector<std::string> variants) {
-  std::ranges::sort(variants);
-  const auto repeated = std::ranges::unique(variants);
-  variants.erase(repeated.begin(), repeated.end());
-  constexpr std::string_view kKey = "variant=";
-  for (const std::string& filter : only) {
-    if (!filter.starts_with(kKey)) continue;
-    const std::string name = filter.substr(kKey.size());
-    if (std::ranges::binary_search(variants, name)) continue;
-    return fail(ErrorCode::usage,
-                fmt::format("--only {}: suite '{}' has no such variant{}", filter, suite,
-                            nearest_hint(name, variants)),
-                fmt::format("it has {}", fmt::join(variants, ", ")));
-  }
-  return {};
+  return check_names(only, "variant", suite, std::move(variants), std::equal_to<>());
+}
+
+Result<void> check_recordings(const OnlyFilters& only, const std::string& suite,
+                              std::vector<std::string> recordings) {
+  return check_names(only, "recording", suite, std::move(recordings), name_contains);
 }
 
 }  // namespace fusebench::suites

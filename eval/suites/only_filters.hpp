@@ -30,4 +30,9 @@ using OnlyFilters = std::vector<std::string>;
 [[nodiscard]] Result<void> check_variants(const OnlyFilters& only, const std::string& suite,
                                           std::vector<std::string> variants);
 
+/// Error usage: a recording that is none of the suite's, with the nearest and all of them. recordings: names,
+/// or their known beginnings ("begin*").
+[[nodiscard]] Result<void> check_recordings(const OnlyFilters& only, const std::string& suite,
+                                            std::vector<std::string> recordings);
+
 }  // namespace fusebench::suites

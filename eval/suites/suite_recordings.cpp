@@ -13,8 +13,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The names that filters choose among. absent: of recordings that do not exist.
+std::vector<std::string> names_of(const PlannedRecordings& existing, std::vector<std::string> absent,
+                                  const Suite& suite) {
+  std::vector<std::string> names = std::move(absent);
+  for (const PlannedRecording& recording : existing.present)
+    names.push_back(recording.folder.filename().string());
+  for (const SuiteSimulation& simulation : suite.simulations) names.push_back(simulation.name);
+  return names;
+}
+
 Result<PlannedRecordings> existing_recordings(const Suite& suite, const RecordingChoice& choice) {
   PlannedRecordings planned;
+  std::vector<std::string> absent;
+  std::optional<Error> missing;
   if (suite.all) {
     if (choice.data.empty()) {
       return fail(ErrorCode::data_missing,
@@ -31,8 +43,12 @@ Result<PlannedRecordings> existing_recordings(const Suite& suite, const Recordin
   for (const SuiteRecording& recording : suite.recordings) {
     const auto folders = find_recordings(recording.name, choice.data);
     if (!folders) {
+      absent.push_back(recording.name);
       if (!recording_may_be_wanted(choice.only, recording.name)) continue;
-      if (recording.source.empty()) return tl::unexpected(folders.error());
+      if (recording.source.empty()) {
+        if (!missing) missing = folders.error();
+        continue;
+      }
       planned.absent.push_back(fmt::format("{}: {}", recording.name, recording.source));
       continue;
     }
@@ -42,6 +58,11 @@ Result<PlannedRecordings> existing_recordings(const Suite& suite, const Recordin
            recording.variants.empty() ? suite.variants : recording.variants});
     }
   }
+  // A mistyped filter is reported before a missing recording.
+  if (auto known = check_recordings(choice.only, suite.name, names_of(planned, std::move(absent), suite));
+      !known)
+    return tl::unexpected(known.error());
+  if (missing) return tl::unexpected(*missing);
   return planned;
 }
 

@@ -34,7 +34,8 @@ struct PlannedRecordings {
   std::vector<std::string> absent;        ///< "NAME: SOURCE" of absent recordings that have a source
 };
 
-/// Recordings that --only leaves out need not exist. Errors: data_missing (a recording without a source, or a
+/// Recordings that --only leaves out need not exist. Errors: usage (a filter that names no recording),
+/// data_missing (a recording without a source, or a
 /// trajectory, does not exist; or all recordings are absent), configuration (two of one name).
 [[nodiscard]] Result<PlannedRecordings> planned_recordings(const Suite& suite, const RecordingChoice& choice);
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "eval/text/control_characters.hpp"
 #include "eval/text/folded_table.hpp"
 #include "eval/text/text_layout.hpp"
 
@@ -79,7 +80,7 @@ std::string markdown_table(const std::vector<TableCells>& lines, std::size_t tex
 
 std::string latex_escaped(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : without_controls(text)) {
     switch (c) {
       case '\\':
         result += "\\textbackslash{}";
@@ -115,7 +116,8 @@ std::string latex_begin(const TableCells& heading, std::size_t text_columns) {
 }
 
 std::string csv_cell(const std::string& text) {
-  const std::string cell = may_be_formula(text) && !is_number(text) ? "'" + text : text;
+  const std::string shown = without_controls(text, "\t\r\n");
+  const std::string cell = may_be_formula(shown) && !is_number(shown) ? "'" + shown : shown;
   if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
   std::string quoted = "\"";
   for (const char c : cell) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -21,7 +21,7 @@ using TableCells = std::vector<std::string>;
 [[nodiscard]] std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns,
                                          std::size_t width = 0);
 
-/// A cell as LaTeX text.
+/// A cell as LaTeX text, without control characters.
 [[nodiscard]] std::string latex_escaped(std::string_view text);
 
 /// "a & b \\": cells are escaped; those whose number is in `bold` are set so.
@@ -31,10 +31,10 @@ using TableCells = std::vector<std::string>;
 [[nodiscard]] std::string latex_begin(const TableCells& heading, std::size_t text_columns);
 inline constexpr std::string_view kLatexEnd = "\\bottomrule\n\\end{tabular}\n";
 
-/// As RFC 4180: quoted where it must be. A text that a spreadsheet would take for a formula, since it begins
-/// with = + - @, a tab or a carriage return and is no number, stands behind an apostrophe; so does one that
-/// begins with apostrophes before such a character, so that a reader can undo it (docs/experiments.md;
-/// scripts/python does).
+/// As RFC 4180: quoted where it must be. Without control characters, but for tabs and line breaks. A text
+/// that a spreadsheet would take for a formula, since it begins with = + - @, a tab or a carriage return and
+/// is no number, stands behind an apostrophe; so does one that begins with apostrophes before such a
+/// character, so that a reader can undo it (docs/experiments.md; scripts/python does).
 [[nodiscard]] std::string csv_cell(const std::string& text);
 
 }  // namespace fusebench::text

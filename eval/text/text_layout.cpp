@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "eval/text/control_characters.hpp"
 #include "eval/text/folded_table.hpp"
 
 namespace fusebench::text {
@@ -20,24 +21,6 @@ std::vector<std::vector<std::string>> without_controls(std::vector<std::vector<s
 }
 
 }  // namespace
-
-std::string without_controls(std::string_view text) {
-  std::string shown;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
-    // Those of ASCII, and those that are C2 80 to C2 9F in UTF-8.
-    if (byte < 0x20 || byte == 0x7F) {
-      shown += fmt::format("\\x{:02X}", byte);
-    } else if (byte == 0xC2 && next >= 0x80 && next <= 0x9F) {
-      shown += fmt::format("\\x{:02X}\\x{:02X}", byte, next);
-      ++i;
-    } else {
-      shown += text[i];
-    }
-  }
-  return shown;
-}
 
 std::string aligned_columns(const std::vector<std::vector<std::string>>& given) {
   const std::vector<std::vector<std::string>> lines = without_controls(given);

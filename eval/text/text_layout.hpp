@@ -8,10 +8,6 @@
 
 namespace fusebench::text {
 
-/// The text with \\xNN in place of every control character, line breaks among them: what is printed on a
-/// terminal must not steer it. Other bytes stay, so that names in UTF-8 do.
-[[nodiscard]] std::string without_controls(std::string_view text);
-
 /// Lines of cells, without_controls(), in columns of equal width, two blanks between them; the last column is
 /// not padded.
 [[nodiscard]] std::string aligned_columns(const std::vector<std::vector<std::string>>& lines);

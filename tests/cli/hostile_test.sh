@@ -28,7 +28,7 @@ complain() {
 # shellcheck disable=SC2016  # meant as they are
 names=('<img src=x onerror=alert(1)>' '$(touch pwned)' '`touch pwned`' "'; touch pwned; '" '"; touch pwned; "'
   '\immediate\write18{touch pwned}' '\input{pwned}' "'; system('touch pwned') #" '=cmd|calc!A0' '@SUM(1+1)' '-touch pwned' '&lt;b&gt;'
-  $'a\x1b[31mb' '%n%s' '</script><script>alert(1)</script>')
+  $'a\x1b[31mb' $'desk\xe2\x80\xaegpj.exe' $'left\xe2\x81\xa6right' '%n%s' '</script><script>alert(1)</script>')
 
 "$binary" simulate --preset slow --format tum --size 32x24 --duration 0.1 --blur-samples 1 --in-motion --threads 1 --out tiny >/dev/null 2>&1 ||
   complain "simulate: exit code $?"
@@ -68,6 +68,28 @@ for script in figures/*.gp figures/*.gnuplot figures/*.plt; do
   # gnuplot runs what stands between back quotes within double quotes, and system(...).
   if grep -E '"[^"]*`' "$script" | grep -q 'touch'; then complain "gnuplot would run a name: $script"; fi
 done
+
+# steered FILE WHAT: a character in it steers a terminal or reorders text.
+steered() {
+  if LC_ALL=C grep -qaP '[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xe2\x80[\x8e\x8f\xaa-\xae]|\xe2\x81[\xa6-\xa9]|\xc2[\x80-\x9f]' "$1"; then
+    complain "$2: a control character as it is"
+  fi
+}
+"$binary" list runs runs >list.txt 2>stderr || complain "list runs: $(tail -n 1 stderr)"
+grep -qF 'desk\xE2\x80\xAEgpj.exe' list.txt || complain 'list runs: a mark of direction is not shown by its bytes'
+steered list.txt 'list runs'
+for form in markdown csv csv-long json latex; do
+  "$binary" table runs --format "$form" >steered.txt 2>/dev/null
+  steered steered.txt "table --format $form"
+done
+"$binary" list runs runs --json >steered.txt 2>/dev/null
+steered steered.txt 'list runs --json'
+"$binary" best runs >steered.txt 2>/dev/null
+steered steered.txt best
+"$binary" collect runs >steered.txt 2>/dev/null
+steered steered.txt collect
+python3 -c 'import re, sys; sys.stdout.buffer.write(re.sub(rb"<script.*?</script>|<style.*?</style>", b"", open("report.html", "rb").read(), flags=re.S))' >steered.txt
+steered steered.txt 'the text of a report'
 
 "$binary" inspect "data/${listed[0]}" --page page.html >/dev/null 2>&1
 not_in page.html '<img src=x onerror' 'markup in a page of an inspection'

@@ -10,23 +10,11 @@
 #include <csignal>
 #include <cstdio>
 
-#include "eval/text/text_layout.hpp"
+#include "eval/text/control_characters.hpp"
 
 namespace fusebench::cli::console {
 
 namespace {
-
-// A signal handler can reach nothing but static storage.
-std::atomic<bool>& stop_flag() {
-  static std::atomic<bool> flag = false;
-  static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
-  return flag;
-}
-
-extern "C" void on_stop_signal(int signal) {
-  // After a second one, which a parent may have passed on, the next ends the process at once.
-  if (stop_flag().exchange(true)) std::signal(signal, SIG_DFL);
-}
 
 /// Whether standard output is a pipe that nobody reads any more.
 bool reader_has_left() {
@@ -78,14 +66,6 @@ void print_progress(std::string_view line) {
 
 void print_warnings(std::span<const std::string> warnings) {
   for (const std::string& warning : warnings) print_progress("warning: " + warning);
-}
-
-const std::atomic<bool>& stop_requested() { return stop_flag(); }
-
-void install_stop_handler() {
-  stop_flag().store(false);  // also makes the static before a signal can need it
-  std::signal(SIGINT, on_stop_signal);
-  std::signal(SIGTERM, on_stop_signal);
 }
 
 ProgressBar::ProgressBar(std::string title)

@@ -4,7 +4,6 @@
 // descriptor closed, or the reader of a pipe gone.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -16,7 +15,6 @@
 namespace fusebench::cli::console {
 
 inline constexpr int kExitRunFailed = 4;
-inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
 
 /// First of all in a process. A standard descriptor that the caller closed would be given to the first file
 /// that is opened, and that file then hold what is printed: each is opened on /dev/null instead, standard
@@ -32,10 +30,6 @@ void print_output(std::string_view text);  ///< standard output
 void print_progress(std::string_view line);                  ///< a line on standard error
 void print_warnings(std::span<const std::string> warnings);  ///< a line each: "warning: ..."
 void print_status(std::string_view text);  ///< on standard error, as it is: of a line that is redrawn
-
-/// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.
-[[nodiscard]] const std::atomic<bool>& stop_requested();
-void install_stop_handler();
 
 /// A bar that redraws itself on a terminal, and is silent elsewhere.
 class ProgressBar {

@@ -80,7 +80,6 @@ Result<void> simulate_missing(const std::vector<engine::BatchJob>& jobs, int thr
     bar.clear();
     for (const std::string& line : lines) print_progress(fmt::format("{}: {}", title, line));
   };
-  control.stop = &stop_requested();
   auto made = engine::make_simulated_recordings(jobs, threads, control);
   bar.clear();
   return made;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/stop_signals.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/local_engine.hpp"
 
@@ -23,6 +24,7 @@ class EngineConsole {
   void tell(std::size_t index, const engine::BatchOutcome& outcome);
   void show(const engine::EngineState& state);
 
+  StopScope stopping_{OnStop::end_itself};
   std::span<const engine::BatchJob> jobs_;
   bool terminal_;
   std::size_t told_ = 0;

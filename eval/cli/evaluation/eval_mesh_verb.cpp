@@ -20,7 +20,6 @@
 #include "eval/cli/evaluation/mesh_request.hpp"
 #include "eval/mesh_error/error_colors.hpp"
 #include "eval/mesh_error/mesh_evaluation.hpp"
-#include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/metric_reports/mesh_report.hpp"
 
 namespace fusebench::cli::evaluation {
@@ -37,7 +36,8 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   const double largest_m = options.colored_max_m.value_or(evaluation.errors.thresholds.back().tau_m);
   const SE3& T_truth_reconstruction = evaluation.errors.alignment.T_reference_estimate;
   for (Vector3d& vertex : mesh.vertices) vertex = T_truth_reconstruction * vertex;
-  mesh.normals.clear();
+  for (Eigen::Vector3f& normal : mesh.normals)
+    normal = (T_truth_reconstruction.rotation * normal.cast<double>()).cast<float>();
   mesh.colors = mesh_error::error_colors(evaluation.vertex_errors_m, largest_m);
   mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
   std::error_code ignored;
@@ -60,6 +60,14 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
   if (evaluation.truth.extent_m.norm() > kRoom_m) {
     console::print_progress(fmt::format("warning: the truth measures {:.4g} m: are both meshes in metres?",
                                         evaluation.truth.extent_m.norm()));
+  }
+  for (const auto& [shape, what] : {std::pair(&evaluation.reconstruction, "the reconstruction"),
+                                    std::pair(&evaluation.truth, "the truth")}) {
+    if (shape->unused_vertices == 0) continue;
+    console::print_progress(fmt::format(
+        "warning: {} of {} vertices of {} belong to no triangle: they count neither in its size nor as "
+        "samples",
+        shape->unused_vertices, shape->vertices + shape->unused_vertices, what));
   }
   if (evaluation.icp && !evaluation.icp->converged) {
     console::print_progress(fmt::format(
@@ -84,8 +92,7 @@ Result<int> run(const MeshVerbOptions& options) {
   auto truth = mesh::read_mesh(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const double scale = options.scale.value_or(1.0);
-  reconstruction = mesh_error::with_discs(mesh::scaled(*std::move(reconstruction), scale));
-  truth = mesh_error::with_discs(*std::move(truth));
+  reconstruction = mesh::scaled(*std::move(reconstruction), scale);
   const Workers workers(options.threads);
   const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, *truth, *request, workers);
   if (!evaluation) return tl::unexpected(evaluation.error());

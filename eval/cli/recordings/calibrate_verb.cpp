@@ -111,8 +111,7 @@ Result<int> run(const CalibrateVerbOptions& options) {
   console::print_warnings(recording.warnings);
   console::ProgressBar bar(recording.name + " calibrate");
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
-      .stop = &console::stop_requested()};
+      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
   const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
                                                  .translation_prior_m = 0.01 * options.translation_prior_cm,
                                                  .time_offset_prior_s = 1e-3 * options.offset_prior_ms,

@@ -55,8 +55,6 @@ Result<DoneExport> export_as_requested(const ExportRequest& request) {
   console::ProgressBar bar("exporting");
   recording->load_frame = [&bar, count = recording->frames.size(),
                            load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
-    if (console::stop_requested())
-      return fail(ErrorCode::run_failed, "the export was stopped; nothing was written");
     bar.show(frame, count);
     return load(frame);
   };

@@ -43,8 +43,6 @@ Result<recording::Recording> open(const InspectVerbOptions& options, const std::
   return run::open_window(folder, *how, *window);
 }
 
-tl::unexpected<Error> interrupted() { return fail(ErrorCode::run_failed, "interrupted"); }
-
 /// How many frames the catalogue says there are.
 std::optional<std::size_t> published_frames(const std::filesystem::path& folder) {
   const calibration::CatalogueEntry* entry = calibration::catalogue_entry_of_folder(folder);
@@ -67,16 +65,10 @@ Result<int> run(const InspectVerbOptions& options) {
                  options);
   }
   if (!recording) return tl::unexpected(recording.error());
-  // An interrupted inspection ends soon: it loads nothing more.
-  recording->load_frame = [load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
-    if (console::stop_requested()) return interrupted();
-    return load(frame);
-  };
   const Workers workers(options.threads);
   inspection::InspectOptions inspect_options;
   if (options.frames.empty()) inspect_options.expected_frames = published_frames(*folder);
   const inspection::Inspection inspection = inspection::inspect(*recording, workers, inspect_options);
-  if (console::stop_requested()) return interrupted();
   if (!options.page.empty()) {
     const auto written =
         text::write_text_file(options.page, inspection_report::to_page(inspection, *recording));

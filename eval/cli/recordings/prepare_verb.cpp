@@ -39,7 +39,7 @@ Result<int> run(const PrepareVerbOptions& options) {
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
   const Workers workers(options.threads);
-  const auto prepared = preparation::prepare(*recording, workers, &console::stop_requested());
+  const auto prepared = preparation::prepare(*recording, workers, nullptr);
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());

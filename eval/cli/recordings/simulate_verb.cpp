@@ -90,7 +90,6 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
   console::ProgressBar bar("simulating");
   simulator::SimulationControl control;
   control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
-  control.stop = &console::stop_requested();
   const auto report = simulator::simulate(*options, chosen.out, workers, control);
   bar.clear();
   if (!report) return tl::unexpected(report.error());

@@ -64,8 +64,7 @@ Result<int> run(const SmoothVerbOptions& options) {
   console::print_warnings(recording.warnings);
   console::ProgressBar bar(recording.name + " smooth");
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
-      .stop = &console::stop_requested()};
+      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
   const Workers workers(options.request.threads);
   const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values(), workers, control);
   bar.clear();

@@ -11,6 +11,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/running/run_like.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
@@ -191,6 +192,7 @@ Result<int> run(const RunOptions& options) {
   console::print_warnings(prepared->recording.warnings);
   if (const auto unused = run::options_without_effect(prepared->spec.config))
     console::print_progress("warning: " + *unused);
+  const console::StopScope stopping(console::OnStop::end_soon);
   bool all_ok = true;
   for (int k = 0; k < options.replicates; ++k) {
     if (k > 0) {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/running/entered_invocation.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/engine/job_plan.hpp"
@@ -37,6 +37,7 @@ console::Verb add_slurm_task_verb(CLI::App& app) {
             if (!plan) return tl::unexpected(plan.error());
             options->engine.limits = suite->limits;
             engine::EngineControl control;
+            const console::StopScope stopping(console::OnStop::end_itself);
             control.stop = &console::stop_requested();
             const auto done =
                 engine::run_slurm_task(plan->jobs, options->engine, options->tasks, options->task, control);

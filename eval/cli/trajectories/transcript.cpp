@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/io/staged_file.hpp"
 #include "eval/cli/console/console.hpp"
 
 namespace fusebench::cli::trajectories {
@@ -36,6 +37,11 @@ void Transcript::result(std::string_view text) {
 
 Result<void> Transcript::finish() const {
   if (options_.logfile.empty()) return {};
+  if (io::is_replaced_link(options_.logfile))
+    return fail(ErrorCode::usage,
+                fmt::format("--logfile {}: a symbolic link, whose target would be changed",
+                            options_.logfile.string()),
+                "name the file itself: what is printed is appended to it");
   std::error_code ignored;  // opening says if it is not there
   if (options_.logfile.has_parent_path())
     std::filesystem::create_directories(options_.logfile.parent_path(), ignored);

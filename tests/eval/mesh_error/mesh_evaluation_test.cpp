@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+
 #include "core/base/geometry.hpp"
 #include "tests/support/test_meshes.hpp"
 
@@ -125,6 +128,71 @@ TEST(MeshEvaluation, DistancesOfVerticesOnRequest) {
   ASSERT_TRUE(result.has_value());
   ASSERT_EQ(result->vertex_errors_m.size(), sphere(1.02, 40).vertices.size());
   for (const double error_m : result->vertex_errors_m) EXPECT_NEAR(error_m, 0.02, 1e-4);  // facets are flat
+}
+
+/// 0.01 m above the square from (0, 0) to (1, 1), every 0.1 m.
+PreciseMesh surfels_above_square() {
+  PreciseMesh surfels;
+  for (int i = 0; i <= 10; ++i) {
+    for (int j = 0; j <= 10; ++j) {
+      surfels.vertices.emplace_back(0.1 * i, 0.1 * j, 0.01);
+      surfels.normals.emplace_back(0, 0, 1);
+      surfels.radii_m.push_back(0.05F);
+    }
+  }
+  return surfels;
+}
+
+/// The square of which the points above are the vertices.
+PreciseMesh square() {
+  PreciseMesh mesh;
+  for (const Vector3d& above : surfels_above_square().vertices)
+    mesh.vertices.emplace_back(above.x(), above.y(), 0);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    for (std::uint32_t j = 0; j < 10; ++j) {
+      const std::uint32_t a = 11 * i + j;
+      mesh.triangles.push_back({a, a + 11, a + 12});
+      mesh.triangles.push_back({a, a + 12, a + 1});
+    }
+  }
+  return mesh;
+}
+
+TEST(MeshEvaluation, MeasuresSurfelsAtTheirCentres) {
+  const Workers workers(1);
+  MeshRequest request{.vertex_errors = true};
+  request.errors.reconstruction = {MeshSamples::vertices, 0, 0};
+  const auto result = evaluate_mesh(surfels_above_square(), square(), request, workers);
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_EQ(result->reconstruction_samples, 121U);
+  EXPECT_EQ(result->reconstruction.vertices, 121U);
+  EXPECT_TRUE(result->reconstruction.surfels);
+  EXPECT_EQ(result->vertex_errors_m.size(), 121U);
+  EXPECT_NEAR(result->errors.accuracy.stats.max, 0.01, 1e-12);
+  EXPECT_NEAR(result->surfreg.vertex_mean_m, 0.01, 1e-12);
+  EXPECT_NEAR(result->reconstruction.extent_m.x(), 1, 1e-12) << "discs do not count in the size";
+  EXPECT_NEAR(result->errors.completeness.stats.mean, 0.01, 0.01) << "discs are the surface";
+}
+
+TEST(MeshEvaluation, LeavesVerticesOfNoTriangleOut) {
+  const Workers workers(1);
+  MeshRequest request;
+  request.errors.reconstruction = request.errors.truth = {MeshSamples::vertices, 0, 0};
+  PreciseMesh reconstruction = square();
+  reconstruction.vertices.emplace_back(500, 0, 0);
+  reconstruction.vertices.emplace_back(0, 700, 0);
+  PreciseMesh truth = square();
+  truth.vertices.emplace_back(0, 0, -900);
+  const auto result = evaluate_mesh(reconstruction, truth, request, workers);
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_EQ(result->reconstruction.unused_vertices, 2U);
+  EXPECT_EQ(result->truth.unused_vertices, 1U);
+  EXPECT_EQ(result->reconstruction_samples, 121U);
+  EXPECT_EQ(result->truth_samples, 121U);
+  EXPECT_LT(result->errors.accuracy.stats.max, 1e-12);
+  EXPECT_LT(result->errors.completeness.stats.max, 1e-12);
+  EXPECT_LT(result->surfreg.vertex_mean_m, 1e-12);
+  EXPECT_NEAR(result->reconstruction.extent_m.norm(), std::sqrt(2.0), 1e-12);
 }
 
 }  // namespace

@@ -31,9 +31,33 @@ TEST(MeshSampling, SpreadsEvenlyOverTheArea) {
             (*sample_mesh(mesh, {MeshSamples::area, 100, 7}))[99]);
   EXPECT_NE((*sample_mesh(mesh, {MeshSamples::area, 100, 8}))[0],
             (*sample_mesh(mesh, {MeshSamples::area, 100, 7}))[0]);
-  EXPECT_EQ(sample_mesh(mesh, {MeshSamples::vertices, 0, 0})->size(), 5U);
+  EXPECT_EQ(sample_mesh(mesh, {MeshSamples::vertices, 0, 0})->size(), 4U) << "one belongs to no triangle";
   mesh.triangles = {{0, 0, 1}};
   EXPECT_FALSE(sample_mesh(mesh, {}).has_value());
+}
+
+TEST(MeshSampling, TakesTheCentresOfSurfelsAsTheirVertices) {
+  PreciseMesh surfels;
+  surfels.vertices = {{1, 2, 3}, {4, 5, 6}};
+  surfels.normals = {{0, 0, 1}, {0, 0, 1}};
+  surfels.radii_m = {0.02F, 0.03F};
+  ASSERT_TRUE(check_mesh(surfels, "the reconstruction").has_value());
+  EXPECT_EQ(sample_mesh(surfels, {MeshSamples::vertices, 0, 0}).value(), surfels.vertices);
+  const auto spread = sample_mesh(surfels, {MeshSamples::area, 1000, 1});
+  ASSERT_TRUE(spread.has_value()) << spread.error().message;
+  const auto of_first = std::ranges::count_if(*spread, [](const Vector3d& point) { return point.z() < 4; });
+  EXPECT_NEAR(static_cast<double>(of_first), 1000.0 * 4 / 13, 2) << "in proportion to their areas";
+}
+
+TEST(MeshSampling, IgnoresWhereAVertexOfNoTriangleIs) {
+  PreciseMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1e200, 0, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(check_mesh(mesh, "the truth").has_value());
+  mesh.triangles = {{0, 1, 3}};
+  EXPECT_FALSE(check_mesh(mesh, "the truth").has_value());
+  mesh.triangles = {};
+  EXPECT_FALSE(check_mesh(mesh, "the truth").has_value()) << "points without a radius are no surface";
 }
 
 }  // namespace

@@ -37,7 +37,18 @@ TEST(Record, ReadsBackWhatItWrote) {
   EXPECT_FALSE(back->metrics.rpe_second.value.has_value());
   EXPECT_EQ(back->recording.notes, sample_record().recording.notes);
   EXPECT_EQ(back->recording.truth, kPseudoTruthWord);
+  EXPECT_EQ(back->recording.start_ns, sample_record().recording.start_ns);
   EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
+}
+
+TEST(Record, RejectsAStartThatNoStampCanBeCountedFrom) {
+  json record = json::parse(to_json(sample_record()));
+  record["recording"]["start_ns"] = std::numeric_limits<std::int64_t>::min();
+  const auto refused = parse_record(record.dump(), "record.json");
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_NE(refused.error().message.find("recording.start_ns"), std::string::npos) << refused.error().message;
+  record["recording"].erase("start_ns");
+  EXPECT_FALSE(parse_record(record.dump(), "record.json")->recording.start_ns) << "an older record has none";
 }
 
 TEST(Record, HasTheKeysThatReadersRelyOn) {

@@ -194,12 +194,47 @@ TEST_F(SuiteTest, OnlyFiltersJobs) {
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::configuration);
 }
 
+TEST_F(SuiteTest, EachNameOfAFilterHasToMatch) {
+  add_recording("data/fr1_rpy");
+  add_recording("data/fr1_xyz");
+  const auto suite = read("name = \"x\"\nall = true\nvariants = [\"full\", \"dm\"]\n");
+  BatchOptions options;
+  options.data = folder_ / "data";
+  options.only = {"recording=rpy", "recording=desk"};
+  const auto refused = plan_batch(*suite, options);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+  EXPECT_NE(refused.error().message.find("recording=desk"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().hint.find("fr1_rpy, fr1_xyz"), std::string::npos) << refused.error().hint;
+  options.only = {"recording=rpy", "recording=xyz"};
+  EXPECT_EQ(plan_batch(*suite, options)->jobs.size(), 4U);
+  options.only = {"variant=dm", "variant=direct"};
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage);
+}
+
+TEST_F(SuiteTest, AFilterThatOthersLeaveNothingOfIsAWarning) {
+  add_recording("a");
+  add_recording("b");
+  const auto suite = read(
+      "name = \"x\"\nvariants = [\"full\"]\n[[recordings]]\nname = \"a\"\n"
+      "[[recordings]]\nname = \"b\"\nsplit = \"tuning\"\n");
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  BatchOptions options;
+  options.data = folder_;
+  options.only = {"recording=a", "recording=b", "split=tuning"};
+  const auto plan = plan_batch(*suite, options);
+  ASSERT_TRUE(plan.has_value()) << plan.error().message;
+  ASSERT_EQ(plan->jobs.size(), 1U);
+  ASSERT_EQ(plan->warnings.size(), 1U);
+  EXPECT_NE(plan->warnings[0].find("recording=a"), std::string::npos) << plan->warnings[0];
+}
+
 TEST_F(SuiteTest, AMistypedFilterIsSaidBeforeAMissingRecording) {
   const auto suite = read("name = \"x\"\nrecordings = [\"nowhere\"]\nvariants = [\"full\", \"dm\"]\n");
   BatchOptions options;
   options.data = folder_;
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::data_missing);
-  for (const char* const only : {"varient=full", "variant=fll", "split=both"}) {
+  for (const char* const only : {"varient=full", "variant=fll", "split=both", "recording=elsewhere"}) {
     options.only = {only};
     EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage) << only;
   }

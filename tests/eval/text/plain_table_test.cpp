@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "eval/text/control_characters.hpp"
+#include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"
 
 namespace fusebench::text {
@@ -41,6 +43,48 @@ TEST(CsvCell, TellsTextsApart) {
   EXPECT_EQ(cells.size(), texts.size());
   EXPECT_EQ(csv_cell("'=1"), "''=1");
   EXPECT_EQ(csv_cell("'desk'"), "'desk'");
+}
+
+TEST(CsvCell, ShowsControlCharacters) {
+  EXPECT_EQ(csv_cell("a\x1b[31mb"), "a\\x1B[31mb");
+  EXPECT_EQ(csv_cell("a\xe2\x80\xae"
+                     "b"),
+            "a\\xE2\\x80\\xAE"
+            "b");
+}
+
+TEST(WithoutControls, ShowsMarksOfDirection) {
+  // U+202A-202E, U+2066-2069, U+200E, U+200F, U+061C.
+  for (const std::string mark : {"\xe2\x80\xaa", "\xe2\x80\xae", "\xe2\x81\xa6", "\xe2\x81\xa9",
+                                 "\xe2\x80\x8e", "\xe2\x80\x8f", "\xd8\x9c"}) {
+    const std::string shown = without_controls("desk" + mark + "gnp.exe");
+    EXPECT_EQ(shown.find(mark), std::string::npos) << shown;
+    EXPECT_TRUE(shown.starts_with("desk\\x")) << shown;
+    EXPECT_TRUE(shown.ends_with("gnp.exe")) << shown;
+  }
+  const std::string others = "\xe2\x80\x93 \xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d \xf0\x9f\x98\x80";
+  EXPECT_EQ(without_controls(others), others) << "dashes, Hebrew and other planes stay";
+}
+
+TEST(WithoutControls, ShowsBytesThatAreNoText) {
+  EXPECT_EQ(without_controls("caf\xe9"), "caf\\xE9");
+  EXPECT_EQ(without_controls("\x9b"
+                             "31m"),
+            "\\x9B"
+            "31m");
+  EXPECT_EQ(without_controls("\xe2\x80"), "\\xE2\\x80") << "ends within a character";
+  EXPECT_EQ(without_controls("\xc0\x9b"), "\\xC0\\x9B") << "too long for its code";
+  EXPECT_EQ(without_controls("\xed\xa0\x80"), "\\xED\\xA0\\x80") << "half of a pair of UTF-16";
+  EXPECT_EQ(without_controls("a\tb\nc", "\n"),
+            "a\\x09"
+            "b\nc");
+}
+
+TEST(JsonText, EscapesControlCharactersAndKeepsTheText) {
+  const std::string name = "a\x1b\x7f\xc2\x9b\xe2\x80\xae\xc3\xbc";
+  const std::string text = json_text({{"name", name}}, -1);
+  EXPECT_EQ(text, "{\"name\":\"a\\u001b\\u007f\\u009b\\u202e\xc3\xbc\"}");
+  EXPECT_EQ(nlohmann::json::parse(text).at("name"), name);
 }
 
 TEST(Tables, ShowControlCharactersInsteadOfObeyingThem) {

@@ -1,0 +1,35 @@
+// What Ctrl-C (SIGINT) and SIGTERM do.
+#pragma once
+
+#include <atomic>
+
+namespace fusebench::cli::console {
+
+inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
+
+/// How the process ends at a signal, always with kExitInterrupted.
+enum class OnStop {
+  end,         ///< at once, without its temporary files
+  end_soon,    ///< the work checks stop_requested(); as with `end` if it does not stop within kMostStop_s
+  end_itself,  ///< the work checks stop_requested(), stops its child processes and keeps what is finished
+};
+
+inline constexpr double kMostStop_s = 0.7;
+
+/// For the whole process: OnStop::end. To be called before any work.
+void handle_stop_signals();
+
+/// Set by a signal within a StopScope.
+[[nodiscard]] const std::atomic<bool>& stop_requested();
+
+/// Another way to end for as long as this lives, in one thread of the process. A third signal ends the
+/// process at once in any case.
+class StopScope {
+ public:
+  explicit StopScope(OnStop on_stop);
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+  ~StopScope();
+};
+
+}  // namespace fusebench::cli::console
