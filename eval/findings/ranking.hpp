@@ -44,6 +44,9 @@ struct Ranking {
   std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number
   /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
   std::vector<RankedConfiguration> configurations;
+
+  /// `data` in a sentence: "real", "simulated".
+  [[nodiscard]] std::string data_word() const { return data == "recorded" ? "real" : data; }
 };
 
 /// By ATE, or by AIE on common pixels where there is no ATE, or by AIE where there is one configuration and

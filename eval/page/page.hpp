@@ -96,7 +96,7 @@ struct TimedPose {
   SE3 T_scene_camera;
 };
 
-/// The way of a camera, drawn beside the mesh of that label.
+/// The path of a camera, drawn beside the mesh of that label.
 struct ScenePath {
   std::string label;
   std::size_t colour = 0;

@@ -167,10 +167,11 @@ RecordingSections recording_sections(RunsOfRecording group, const PageContext& c
   add_patches(sections, patches, series);
   if (page::PageScene scene = model_scene(series, {detail.triangles, detail.buckets}, result.warnings);
       !scene.meshes.empty()) {
-    sections.push_back({"Models",
-                        "Simplified for this page; mesh.ply of each run has all triangles. Lines: the way of "
-                        "the camera, and where it was at the chosen time.",
-                        std::move(scene), 3});
+    sections.push_back(
+        {"Models",
+         "Simplified for this page; mesh.ply of each run has all triangles. Lines: camera path, "
+         "and where the camera was at the chosen time.",
+         std::move(scene), 3});
   }
   add_charts(sections, "Health and time", run_charts::tracking_charts(series, detail.buckets));
   add_charts(sections, "Profiles", run_charts::profile_charts(series));

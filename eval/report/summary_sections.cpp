@@ -84,12 +84,13 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
       "Geometric means over {} {} recording{}; ratios and their intervals (Student's t on logarithms) over "
       "the "
       "recordings that both have numbers of.",
-      ranking.recordings, ranking.data, ranking.recordings == 1 ? "" : "s");
+      ranking.recordings, ranking.data_word(), ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
   const std::string frames = ranking.frames.empty() ? "" : ", " + ranking.frames;
-  return {only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data, frames),
-          std::move(text), std::move(table), 3};
+  return {
+      only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data_word(), frames),
+      std::move(text), std::move(table), 3};
 }
 
 /// The table of systems and how to read it, where it says more than the table of runs.

@@ -95,8 +95,20 @@ SummaryTable nees_table(std::string_view split, const std::vector<const SummaryR
   return table;
 }
 
+/// "PASS"; of what no run has a number of: "not decided".
+std::string verdict_cell(Verdict verdict) {
+  return verdict == Verdict::not_applicable ? "not decided" : std::string(to_string(verdict));
+}
+
 std::string number_cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
+}
+
+/// "tuning: 0.012 (PASS, 4 recordings)"; blank where that split has no number.
+std::string beside_cell(const CriterionMeasurement& beside) {
+  if (beside.verdict == Verdict::not_applicable) return "";
+  return fmt::format("{}: {} ({}, {} recording{})", beside.split, number_cell(beside.measured),
+                     to_string(beside.verdict), beside.recordings, beside.recordings == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -109,13 +121,11 @@ SummaryTable criteria_table(const std::vector<CriterionResult>& criteria) {
   for (const CriterionResult& result : criteria) {
     std::string groups;
     for (const std::string& group : result.criterion.groups) groups += (groups.empty() ? "" : " ") + group;
-    table.rows.push_back(
-        {std::string(to_string(result.decided.verdict)), result.criterion.title,
-         groups.empty() ? std::string(kAllGroups) : groups, number_cell(result.decided.measured),
-         result.decided.limit, fmt::format("{}", result.decided.recordings),
-         fmt::format("{}: {} ({} of {})", result.beside.split, number_cell(result.beside.measured),
-                     to_string(result.beside.verdict), result.beside.recordings),
-         result.decided.note});
+    table.rows.push_back({verdict_cell(result.decided.verdict), result.criterion.title,
+                          groups.empty() ? std::string(kAllGroups) : groups,
+                          number_cell(result.decided.measured), result.decided.limit,
+                          fmt::format("{}", result.decided.recordings), beside_cell(result.beside),
+                          result.decided.note});
   }
   return table;
 }

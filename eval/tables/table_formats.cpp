@@ -47,7 +47,7 @@ void add_values(const registry::RunNumbers& values, Cells& cells) {
   for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, values[*column]));
 }
 
-/// "ok", "ok (12 silent)", and of replicates how many are: "4/5 ok (12 silent)".
+/// "ok", "ok (12 undetected)", and of replicates how many are: "4/5 ok (12 undetected)".
 std::string status_cell(const TableRow& row) {
   if (row.members.size() < 2) return record::status_text(row.status, row.silent);
   return fmt::format("{}/{} {}", row.ok_members, row.members.size(),
@@ -73,8 +73,8 @@ std::string mean_over(const TableMean& mean) {
 
 Cells shown_cells(const TableMean& mean, bool with_replicates) {
   Cells cells = {mean_over(mean), record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
-                 mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} silent)", mean.ok, mean.total, mean.silent,
-                                               mean.silent == 1 ? "" : "s")
+                 mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} with undetected failures)", mean.ok,
+                                               mean.total, mean.silent, mean.silent == 1 ? "" : "s")
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
   cells.insert(cells.end(), with_replicates ? 4 : 3, "");
@@ -87,7 +87,7 @@ std::string count_line(const ResultTable& table) {
   const auto silent =
       std::ranges::count_if(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; });
   return fmt::format("{} of {} runs ok{}.", ok, table.rows.size(),
-                     silent > 0 ? fmt::format(", {} with silent failures", silent) : "");
+                     silent > 0 ? fmt::format(", {} with undetected failures", silent) : "");
 }
 
 std::string markdown(const ResultTable& table, std::size_t width) {

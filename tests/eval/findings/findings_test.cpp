@@ -51,7 +51,7 @@ TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
   const auto found = rankings();
   ASSERT_EQ(found.size(), 1U);
   const std::string sentence = sentences_of(found[0]).front();
-  testing::expect_contains(sentence, "full has the smallest ATE on one recorded recording: 1.00 cm");
+  testing::expect_contains(sentence, "full has the smallest ATE on one real recording: 1.00 cm");
   testing::expect_contains(sentence, "dm with 2.00 cm, 2.00 times as much");
   testing::expect_contains(sentence, "One recording each: no evidence");
   EXPECT_FALSE(found[0].configurations[1].to_best->interval.has_value());
@@ -61,7 +61,7 @@ TEST_F(FindingsTest, EqualOnesAreNotRanked) {
   add_run("a", "full", 0.01);
   add_run("a", "dm", 0.01);
   EXPECT_EQ(sentences_of(rankings().at(0)).front(),
-            "full and dm have the same ATE on one recorded recording: 1.00 cm.");
+            "full and dm have the same ATE on one real recording: 1.00 cm.");
 }
 
 TEST_F(FindingsTest, PosesAtTheEndAreHeldAgainstThoseOnTheWay) {
@@ -142,7 +142,7 @@ TEST_F(FindingsTest, WhoLostARecordingIsComparedWhereBothHaveNumbers) {
   EXPECT_FALSE(found[0].configurations[1].value.has_value());
   EXPECT_NEAR(found[0].configurations[1].to_best->ratio, 0.5, 1e-12);
   const std::string sentence = sentences_of(found[0]).front();
-  testing::expect_contains(sentence, "full alone has an ATE on all of 2 recorded recordings");
+  testing::expect_contains(sentence, "full alone has an ATE on all of 2 real recordings");
   testing::expect_contains(sentence, "Where both have one, dm has 0.50 times as much");
   const auto failures = failures_of(tables::table_of(runs_));
   ASSERT_EQ(failures.size(), 1U);
@@ -169,7 +169,7 @@ TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
   EXPECT_EQ(found[0].configurations[1].label, "dm synthetic IMU");
   EXPECT_EQ(found[0].configurations[2].label, "dm recorded IMU");
   ASSERT_EQ(found[1].configurations.size(), 1U);
-  testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one recorded recording, frames 0:4");
+  testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one real recording, frames 0:4");
 
   runs_.clear();  // windows that share no frame are samples of the recording
   add_window("full", 0, 5, 0.01);
@@ -190,7 +190,7 @@ TEST_F(FindingsTest, ARunWithoutGroundTruthHasItsIntensityErrorSaid) {
   const auto found = rankings();
   ASSERT_EQ(found.size(), 1U);
   testing::expect_contains(sentences_of(found[0]).front(),
-                           "full has an AIE of 6.000 grey on one recorded recording.");
+                           "full has an AIE of 6.000 grey on one real recording.");
 
   add_run("a", "dm", 0.01);
   runs_.back().record.metrics =

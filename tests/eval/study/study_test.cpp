@@ -141,6 +141,21 @@ TEST_F(StudyTest, TheOtherSplitStandsBeside) {
   EXPECT_DOUBLE_EQ(*result.beside.measured, 0.03);
 }
 
+TEST_F(StudyTest, TheCellOfASplitWithoutRunsIsBlank) {
+  add("a", "slow", "full", 0.01);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.split = "held-out";
+  criterion.at_most = 0.02;
+  const auto others = [&] {
+    return criteria_table(check_criteria(study(), std::vector{criterion})).rows[0][6];
+  };
+  EXPECT_EQ(others(), "");
+  add("t1", "slow", "full", 0.03);
+  EXPECT_EQ(others(), "tuning: 0.03 (FAIL, 1 recording)");
+  criterion.groups = {"fast"};
+  EXPECT_EQ(criteria_table(check_criteria(study(), std::vector{criterion})).rows[0][0], "not decided");
+}
+
 TEST_F(StudyTest, ALostRunFailsACriterionAndNoRunDecidesNothing) {
   add("a", "slow", "full", 0.001);
   add("b", "slow", "full", 0.001, RunStatus::lost);
