@@ -90,9 +90,8 @@ std::string best_sentence(const Ranking& ranking) {
     return fmt::format("Nothing has an {} on all of {}; {} has it on most, {}.", name, where, best.label,
                        best.recordings);
   }
-  const std::string number =
-      shown(*ranking.metric, *best.value) +
-      (ranking.recordings > 1 ? " (geometric mean; means in the table of results are arithmetic)" : "");
+  const std::string number = shown(*ranking.metric, *best.value) +
+                             (ranking.recordings > 1 ? " (geometric mean over recordings)" : "");
   if (ranking.configurations.size() == 1) {
     return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
                        number, where);

@@ -20,6 +20,7 @@ struct RankedConfiguration {
   std::string variant;
   std::string description;  ///< in a line
   bool imu_from_truth = false;
+  std::vector<std::size_t> rows = {};  ///< of the table: its repetitions on all recordings
   std::size_t runs = 0;
   std::size_t ok = 0;
   std::size_t recordings = 0;  ///< of those that it has a number of

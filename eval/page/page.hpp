@@ -21,9 +21,11 @@ struct PageTable {
     std::vector<std::string> cells;
     std::string style;                   ///< "error", "warning", "note" or empty
     std::vector<std::size_t> best = {};  ///< places of the cells that are the best of their kind
+    bool fixed = false;                  ///< stays at its place when the table is sorted: a mean, a sum
   };
   std::vector<std::string> header;
   std::vector<Row> rows;
+  bool sortable = false;  ///< by a click on a heading; needs the script
 };
 
 /// How many colours the style has for series: --series-0 and so on. They repeat.
@@ -134,6 +136,8 @@ struct PageSection {
                PageParagraphs>
       content;
   int level = 2;  ///< of the heading; level 2 stands in the page's list of contents, and begins a part
+  /// Closed until its heading is clicked, and open on paper. Of level 2: with all of its part.
+  bool folded = false;
   std::size_t image_columns = 0;  ///< of images where there is room; 0: as many as fit
   bool strip = false;             ///< images in one row, small, to scroll through
   bool timeline = false;          ///< of a part: one time for all of its charts, images and cameras

@@ -211,6 +211,66 @@ function labelCells() {
   });
 }
 
+/// The first number of a cell: of "1.22 [1.10, 1.40]" 1.22. Nothing of "-", "lost" and texts.
+function numberOf(cell) {
+  const number = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/.exec(cell.textContent.trim());
+  return number ? Number(number[0]) : null;
+}
+
+/** Numbers by value, before texts; texts by their letters. Rows that are equal keep their order. */
+function compareCells(a, b) {
+  const [x, y] = [numberOf(a), numberOf(b)];
+  if (x !== null && y !== null) return x - y;
+  if (x !== null || y !== null) return x !== null ? -1 : 1;
+  return a.textContent.localeCompare(b.textContent, "en");
+}
+
+/// Rows that are fixed (means) stay at the end.
+function sortBy(table, column, descending) {
+  const rows = [...table.tBodies[0].rows];
+  const moved = rows.filter((row) => !row.classList.contains("fixed"));
+  const sign = descending ? -1 : 1;
+  moved.sort((a, b) => {
+    const order = compareCells(a.cells[column], b.cells[column]);
+    const missing = (numberOf(a.cells[column]) === null) !== (numberOf(b.cells[column]) === null);
+    return missing ? order : sign * order;  // what has no number comes last in either direction
+  });
+  table.tBodies[0].append(...moved, ...rows.filter((row) => row.classList.contains("fixed")));
+}
+
+/// A heading is a button: a click sorts by its column, another one the other way round.
+function offerSorting() {
+  document.querySelectorAll("table.sortable").forEach((table) => {
+    const headings = [...table.querySelectorAll("thead th")];
+    headings.forEach((heading, column) => {
+      const sort = () => {
+        const descending = heading.getAttribute("aria-sort") === "ascending";
+        headings.forEach((other) => other.removeAttribute("aria-sort"));
+        heading.setAttribute("aria-sort", descending ? "descending" : "ascending");
+        sortBy(table, column, descending);
+      };
+      heading.setAttribute("role", "button");
+      heading.tabIndex = 0;
+      heading.title = "sort by this column";
+      heading.addEventListener("click", sort);
+      heading.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        sort();
+      });
+    });
+  });
+}
+
+let openedForPaper = [];
+
+/// Paper has no clicks: what is folded is open there.
+function unfoldForPaper(paper) {
+  if (paper) openedForPaper = [...document.querySelectorAll("details.fold:not([open])")];
+  openedForPaper.forEach((details) => { details.open = paper; });
+  if (!paper) openedForPaper = [];
+}
+
 /// Of charts on paper, in pixels: such that texts are as large as those beside them. page.css has the same shapes.
 const paperSize = { view: [310, 310], chart: [410, 300] };
 const leastOnPaper = 120;  // height of what is drawn
@@ -236,8 +296,9 @@ function drawForPaper(paper) {
 }
 
 labelCells();
+offerSorting();
 draw();
 description.forEach(offerWhole);
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
-window.addEventListener("beforeprint", () => drawForPaper(true));
-window.addEventListener("afterprint", () => drawForPaper(false));
+window.addEventListener("beforeprint", () => { unfoldForPaper(true); drawForPaper(true); });
+window.addEventListener("afterprint", () => { drawForPaper(false); unfoldForPaper(false); });

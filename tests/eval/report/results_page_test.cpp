@@ -205,14 +205,16 @@ TEST_F(ResultsPageTest, TheHeadSaysWhatWasFoundBeforeAllTables) {
   const auto runs = find_runs(folder_ / "runs");
   ASSERT_TRUE(runs.has_value());
   const ResultsPage result = results_page(*runs, "Circles");
-  EXPECT_EQ(result.page.sections.front().title, "What was found");
-  const auto& lines = std::get<PageParagraphs>(result.page.sections.front().content).lines;
+  EXPECT_EQ(result.page.sections.front().title, "ATE [cm] by recording and method");
+  EXPECT_EQ(result.page.sections[1].title, "What was found");
+  const auto& lines = std::get<PageParagraphs>(result.page.sections[1].content).lines;
   EXPECT_NE(lines[0].find("full"), std::string::npos) << lines[0];
   const bool failed = std::ranges::any_of(lines, [](const std::string& line) {
     return line.find("no-imu on circle (lost: lost at the end)") != std::string::npos;
   });
   EXPECT_TRUE(failed);
-  EXPECT_EQ(result.page.sections[1].title, "What was compared");
+  EXPECT_EQ(result.page.sections[2].title, "What was compared");
+  EXPECT_TRUE(result.page.sections[2].folded) << "details";
 }
 
 TEST_F(ResultsPageTest, OnlyProfiledRunsHaveAProfile) {
