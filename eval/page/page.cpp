@@ -76,14 +76,22 @@ std::string html_of(const PageTable& table) {
   return html + "</tbody></table></div>\n";
 }
 
+std::string colour_bar(const Chart& chart) {
+  if (!chart.value_colours) return "";
+  return fmt::format(
+      "<div class=\"colourbar\"><span>0</span><span class=\"ramp\"></span><span>{:.3g} and more</span>"
+      "<span>{}</span></div>",
+      chart.value_colours->top, escaped(chart.value_colours->label));
+}
+
 std::string html_of(const std::vector<Chart>& charts, std::size_t part, Json& all) {
   std::string html = "<div class=\"charts\">\n";
   for (const Chart& chart : charts) {
     html += fmt::format(
         "<figure><h3>{}</h3><div class=\"canvas{}\"><canvas id=\"chart-{}\" role=\"img\" "
-        "aria-label=\"{}\"></canvas></div><figcaption>{}</figcaption></figure>\n",
+        "aria-label=\"{}\"></canvas></div>{}<figcaption>{}</figcaption></figure>\n",
         escaped(chart.title), chart.equal_scale ? " square" : "", all.size(), escaped(chart.title),
-        escaped(chart.caption));
+        colour_bar(chart), escaped(chart.caption));
     all.push_back(json_of(chart, part));
   }
   return html + "</div>\n";

@@ -59,6 +59,14 @@ struct ChartSeries {
   std::optional<std::size_t> colour = {};  ///< of the style's; by default the series' place in its chart
   std::vector<ChartBox> boxes = {};        ///< with SeriesStyle::boxes, in place of points
   bool on_request = false;                 ///< drawn after a click on its name; not in figures
+  std::vector<double> values = {};         ///< one a point: colours the line, by ValueColours of the chart
+};
+
+/// The colour bar of a chart whose lines are coloured by their values: from zero to `top`, beyond which all
+/// have the last colour.
+struct ValueColours {
+  std::string label;  ///< "position error [cm]"
+  double top = 1;
 };
 
 struct Chart {
@@ -76,6 +84,7 @@ struct Chart {
   /// where there is none.
   std::optional<Vector2d> x_range = {};
   std::optional<Vector2d> y_range = {};  ///< of the axis on the left
+  std::optional<ValueColours> value_colours = {};
   std::vector<ChartSeries> series;
 };
 

@@ -40,11 +40,30 @@ function pointsOf(series) {
 const orders = { backdrop: 1, band: 2, segments: 0.5 };
 const widths = { dots: 0, boxes: 0, backdrop: 4, segments: 0.8, band: 0.5 };
 
-function dataset(series) {
+/// Viridis, as the colour bar has it (page.css).
+const ramp = [[68, 1, 84], [62, 74, 137], [38, 130, 142], [53, 183, 121], [180, 222, 44], [253, 231, 37]];
+
+/// share: of the largest value. Grey where it is unknown.
+function rampColour(share) {
+  if (share === null || !isFinite(share)) return "rgb(170,170,170)";
+  const at = Math.min(Math.max(share, 0), 1) * (ramp.length - 1);
+  const below = Math.min(Math.floor(at), ramp.length - 2);
+  const mixed = ramp[below].map((c, i) => Math.round(c + (at - below) * (ramp[below + 1][i] - c)));
+  return `rgb(${mixed.join(",")})`;
+}
+
+/// Each segment has the colour of the value at its end.
+function segmentColours(series, top) {
+  if (!top || series.points.length === 0 || series.points[0].length < 3) return {};
+  return { borderWidth: 3, segment: { borderColor: (segment) => rampColour(series.points[segment.p1DataIndex][2] / top) } };
+}
+
+/// top: the value of the last colour of lines that are coloured by their values.
+function dataset(series, top) {
   const stroke = strokeOf(series);
   const boxes = series.style === "boxes";
   const filled = series.style === "bars" || series.style === "band";
-  return {
+  return Object.assign({
     label: series.label,
     data: pointsOf(series),
     hidden: series.hidden,
@@ -63,7 +82,7 @@ function dataset(series) {
     showLine: series.style !== "dots" && !boxes,
     fill: filled ? "origin" : false,
     spanGaps: false,
-  };
+  }, segmentColours(series, top));
 }
 
 /// Bars that stand on one another, one stack a category.
@@ -143,7 +162,7 @@ function drawChart(chart, index) {
     type: bars ? "bar" : "line",
     data: {
       labels: bars ? chart.categories.map(linesOf) : undefined,
-      datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
+      datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series, chart.top)),
     },
     options: {
       animation: false,

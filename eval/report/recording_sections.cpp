@@ -91,6 +91,8 @@ void add_curves(Sections& sections, std::span<const run_charts::RunSeries> serie
       revised ? "Poses as each was known when its frame came; final ones are under Loops and final poses."
               : "";
   add_charts(sections, "Trajectories", run_charts::view_charts(series, detail.buckets), which);
+  add_charts(sections, "Trajectories coloured by their error",
+             run_charts::error_path_charts(series, detail.buckets), which);
   add_charts(sections, "Position over time", run_charts::position_charts(series, detail.buckets), which);
   add_charts(sections, "Errors", run_charts::error_charts(series, detail.buckets), which);
   for (page::PageSection& section : loop_sections(series, detail.buckets))
