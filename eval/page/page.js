@@ -132,11 +132,25 @@ function shortened(context, text, room) {
   return short;
 }
 
-/** Names fit the chart. Dots are round in a legend, too, whose other symbols are wide. */
+/// A piece of the series' line, with its dashes.
+function lineSwatch(series) {
+  const name = "http://www.w3.org/2000/svg";
+  const picture = document.createElementNS(name, "svg");
+  const line = document.createElementNS(name, "line");
+  const put = (element, values) => Object.entries(values).forEach(([key, value]) => element.setAttribute(key, value));
+  put(picture, { width: 28, height: 8, "aria-hidden": "true" });
+  put(line, { x1: 0, x2: 28, y1: 4, y2: 4, "stroke-dasharray": (series.dashes || []).join(" "), "stroke-width": series.style === "backdrop" ? 5 : 2.5 });
+  line.style.stroke = "var(--series-" + (series.colour % seriesColours) + ")";
+  picture.append(line);
+  return picture;
+}
+
+/** Names fit the chart, and lines have the dashes of their curves. Dots are round in a legend, too, whose other symbols are wide. */
 function legendLabels(made) {
   const labels = Chart.defaults.plugins.legend.labels.generateLabels(made);
   for (const label of labels) {
     label.text = shortened(made.ctx, label.text, made.width - 60);
+    if (label.pointStyle === "line") label.lineDash = made.data.datasets[label.datasetIndex].borderDash || [];
     if (label.pointStyle === "circle") label.pointStyle = dotOf(label.fillStyle);
   }
   return labels;
