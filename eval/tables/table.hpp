@@ -77,6 +77,9 @@ struct ResultTable {
 /// there are others; all that are shown as the best one is are best.
 [[nodiscard]] std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row);
 
+/// Error usage: a key that is no column of the table of runs, with those that are.
+[[nodiscard]] Result<void> check_latex_metrics(const std::vector<std::string>& keys);
+
 enum class TableFormat { markdown, csv, csv_long, json, latex };
 /// Error usage.
 [[nodiscard]] Result<TableFormat> parse_table_format(std::string_view text);

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "eval/record/data_labels.hpp"
@@ -99,6 +101,40 @@ std::string markdown(const ResultTable& table, std::size_t width) {
   return text;
 }
 
+/// Keys of the columns of numbers, in their order.
+std::vector<std::string> column_keys() {
+  std::vector<std::string> keys;
+  for (const registry::RunMetric* column : columns()) keys.emplace_back(column->key);
+  keys.insert(keys.end(), {"frames_tracked", "model_vertices", "fps"});
+  return keys;
+}
+
+/// Keeps the names and the columns of those numbers.
+void keep_columns(const std::vector<std::string>& metrics, LatexTable& table) {
+  const std::vector<std::string> keys = column_keys();
+  std::vector<std::size_t> kept;
+  for (std::size_t column = 0; column < table.heading.size(); ++column) {
+    const bool is_name = column < table.text_columns;
+    const std::size_t place = is_name ? 0 : column - table.text_columns;
+    if (is_name || (place < keys.size() && std::ranges::find(metrics, keys[place]) != metrics.end()))
+      kept.push_back(column);
+  }
+  const auto chosen = [&](const Cells& cells) {
+    Cells result;
+    for (const std::size_t column : kept) result.push_back(cells[column]);
+    return result;
+  };
+  table.heading = chosen(table.heading);
+  for (LatexTable::Line& line : table.lines) {
+    std::vector<std::size_t> bold;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      if (std::ranges::find(line.bold, kept[i]) != line.bold.end()) bold.push_back(i);
+    }
+    line.cells = chosen(line.cells);
+    line.bold = std::move(bold);
+  }
+}
+
 std::string latex(const ResultTable& table, const LatexLayout& layout) {
   LatexTable latex;
   latex.caption =
@@ -114,6 +150,7 @@ std::string latex(const ResultTable& table, const LatexLayout& layout) {
   }
   for (std::size_t i = 0; i < table.means.size(); ++i)
     latex.lines.push_back({shown_cells(table.means[i], replicates), {}, i == 0});
+  if (!layout.metrics.empty()) keep_columns(layout.metrics, latex);
   latex.footnotes = {count_line(table)};
   latex.footnotes.insert(latex.footnotes.end(), table.notes.begin(), table.notes.end());
   latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
@@ -266,6 +303,17 @@ std::vector<Cells> table_cells(const ResultTable& table) {
   for (const TableRow& row : table.rows) lines.push_back(shown_cells(row, replicates));
   for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean, replicates));
   return lines;
+}
+
+Result<void> check_latex_metrics(const std::vector<std::string>& keys) {
+  const std::vector<std::string> known = column_keys();
+  for (const std::string& key : keys) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    return fail(ErrorCode::usage,
+                fmt::format("--metrics {}: the table of runs has no such column (allowed: {})", key,
+                            fmt::join(known, " | ")));
+  }
+  return {};
 }
 
 Result<TableFormat> parse_table_format(std::string_view text) {
