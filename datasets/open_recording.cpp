@@ -119,8 +119,8 @@ void note_ground_truth_offset(recording::Recording& recording) {
   const Vector3d offset_m = recording::ground_truth_offset_m(recording);
   if (offset_m.isZero(0)) return;
   recording.notes.push_back(
-      fmt::format("camera in the body of the ground truth: ({:.3f}, {:.3f}, {:.3f}) m; a synthetic IMU and "
-                  "silent failures take account of it, ATE and RPE do not",
+      fmt::format("camera in the motion-capture body: ({:.3f}, {:.3f}, {:.3f}) m; a synthetic IMU and "
+                  "undetected failures take account of it, ATE and RPE do not",
                   offset_m.x(), offset_m.y(), offset_m.z()));
 }
 

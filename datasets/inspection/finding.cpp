@@ -44,7 +44,8 @@ constexpr auto kCodes = std::to_array<FindingCode>({
     // Depth
     {"depth-empty", "there are frames without any depth"},
     {"depth-holes", "much of the depth images is without measurement"},
-    {"depth-range", "depth is measured where no RGB-D sensor for rooms measures: the scale is suspect"},
+    {"depth-range",
+     "depth is measured where no RGB-D sensor for rooms measures: the scale is probably wrong"},
     {"depth-scale", "ground truth says that depth has another scale"},
     {"depth-misregistered", "edges of depth and colour do not coincide"},
     // Ground truth

@@ -118,8 +118,8 @@ Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResid
 const std::vector<Misreading>& pose_misreadings() {
   static const std::vector<Misreading> kAll = {
       {"truth-not-reflected", "poses reflected about the x-z plane (or fy negated)", &reflected},
-      {"truth-inverted", "poses inverted", &inverted},
-      {"truth-rotation-inverted", "rotations inverted", &rotation_inverted},
+      {"truth-inverted", "inverted poses", &inverted},
+      {"truth-rotation-inverted", "inverted rotations", &rotation_inverted},
       {"truth-quaternion-order", "quaternions as w x y z", &scalar_first},
   };
   return kAll;

@@ -88,12 +88,12 @@ std::vector<Improvement> try_all(const WarpTest& test, const measures::Reading& 
   const FittedParameter depth = fit_depth_scale(test, base);
   measures::Reading reading = base;
   reading.depth_scale *= depth.value;
-  result.push_back(improvement("depth-scale", "depth scaled", depth.value, depth.comparison, reading));
+  result.push_back(improvement("depth-scale", "scaled depth", depth.value, depth.comparison, reading));
   const FittedParameter focal = fit_focal_scale(test, base);
   reading = base;
   reading.focal_scale *= focal.value;
   result.push_back(
-      improvement("focal-length", "focal length scaled", focal.value, focal.comparison, reading));
+      improvement("focal-length", "scaled focal length", focal.value, focal.comparison, reading));
   const FittedParameter shift = fit_truth_shift(test, base);
   reading = base;
   reading.truth_shift_ns += std::llround(1e9 * shift.value);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -49,21 +50,66 @@ void rank(std::vector<BestRow>& rows) {
   // Stable: configurations that are equal stay in the order of variants and options.
   std::ranges::stable_sort(rows, [](const BestRow& a, const BestRow& b) {
     const auto key = [](const ConfigurationSummary& c) {
-      return std::tuple(!c.complete(), c.failed.size() + c.not_run.size(), !c.mean, c.mean.value_or(0));
+      return std::tuple(!c.complete(), c.failed.size() + c.not_run.size(), !c.mean, !c.ratio.tied,
+                        c.ratio.ratio.value_or(c.mean.value_or(0)));
     };
     return key(a.configuration) < key(b.configuration);
   });
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ConfigurationSummary& own = rows[i].configuration;
     if (!own.mean) continue;
-    // One before is better if its whole range is, which without replicates is its mean.
+    // Without ratios one before is better if its whole range is, which without replicates is its mean.
     const auto is_better = [&](const BestRow& before) {
       const ConfigurationSummary& other = before.configuration;
-      return !own.complete() || !other.complete() || other.spread->most < own.spread->least;
+      if (!own.complete() || !other.complete()) return true;
+      if (!own.ratio.ratio || !other.ratio.ratio) return other.spread->most < own.spread->least;
+      return !own.ratio.tied && (other.ratio.tied || *other.ratio.ratio < *own.ratio.ratio);
     };
     rows[i].rank = 1 + static_cast<std::size_t>(std::count_if(
                            rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(i), is_better));
   }
+}
+
+std::string label_of(const ConfigurationSummary& configuration, const BestGroup& group) {
+  std::string label = configuration.variant;
+  for (const auto& [key, value] : configuration.options) label += fmt::format(" {}={}", key, value);
+  const bool imus = std::ranges::any_of(
+      group.rows, [&](const BestRow& row) { return row.configuration.imu != configuration.imu; });
+  return imus ? fmt::format("{} ({})", label, configuration.imu) : label;
+}
+
+/// "1.41 times the best of each recording (95 % interval 1.00 to 2.00)".
+std::string ratio_text(const RatioMean& ratio) {
+  const std::string interval = ratio.interval ? fmt::format("95 % interval {:.2f} to {:.2f}",
+                                                            (*ratio.interval)[0], (*ratio.interval)[1])
+                                              : "one recording without replicates: no interval";
+  return fmt::format("{:.2f} times the best of each recording ({})", ratio.ratio.value_or(1), interval);
+}
+
+/// rows: ranked, all of them.
+std::string headline_of(const BestGroup& group, const registry::RunMetric& metric) {
+  constexpr std::size_t kMostNamed = 6;
+  const ConfigurationSummary& best = group.rows.front().configuration;
+  const std::string where = fmt::format("{} ({}, {} recording{})", group.label, group.kind,
+                                        group.recordings.size(), group.recordings.size() == 1 ? "" : "s");
+  if (!best.complete())
+    return fmt::format("{}: no configuration has {} on all recordings.", where, metric.key);
+  if (!best.ratio.ratio)
+    return fmt::format("{}: {} has the smallest mean; no ratios, since a {} is not positive.", where,
+                       label_of(best, group), metric.key);
+  std::string text = fmt::format("{}: {} is best by {}: {}.", where, label_of(best, group), metric.key,
+                                 ratio_text(best.ratio));
+  std::vector<std::string> ties;
+  for (const BestRow& row : std::span(group.rows).subspan(1)) {
+    if (row.rank == 1)
+      ties.push_back(
+          fmt::format("{} ({:.2f})", label_of(row.configuration, group), *row.configuration.ratio.ratio));
+  }
+  if (ties.empty()) return text;
+  const std::size_t more = ties.size() - std::min(ties.size(), kMostNamed);
+  ties.resize(ties.size() - more);
+  return text + fmt::format(" Tied with it: {}{}.", fmt::join(ties, ", "),
+                            more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 std::vector<std::string> notes_of(std::span<const RunRow> rows, const registry::RunMetric& metric,
@@ -87,7 +133,10 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const registry::
   notes.push_back(fmt::format(
       "{}: mean over a group's recordings of the median over their ok runs; less is better. Of replicates "
       "[B, C] is "
-      "the range of that mean; configurations whose ranges overlap share a rank. "
+      "the range of that mean. Times the best: geometric mean over recordings of the ratio to the smallest "
+      "median of the recording, with its 95 % interval (bootstrap over recordings and replicates, not "
+      "corrected for picking the best of several). Rank 1: the smallest ratio, and those whose ratio to it "
+      "has an interval that contains 1. "
       "Configurations that lost, failed or did not run some of them come after those that did all; "
       "their means are of fewer recordings and do not compare.",
       metric.key));
@@ -130,11 +179,12 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
     ConfigurationSummaries summaries = summarise_configurations(runs, *request.metric);
     without_number.insert(summaries.without_number.begin(), summaries.without_number.end());
     if (summaries.configurations.empty()) continue;
-    BestGroup group{key.label, key.kind, std::move(summaries.recordings), 0, {}};
+    BestGroup group{key.label, key.kind, std::move(summaries.recordings), "", 0, {}};
     for (ConfigurationSummary& summary : summaries.configurations)
       group.rows.push_back({std::nullopt, std::move(summary)});
     group.configurations = group.rows.size();
     rank(group.rows);
+    group.headline = headline_of(group, *request.metric);
     if (request.most > 0 && group.rows.size() > request.most)
       group.rows.erase(group.rows.begin() + static_cast<std::ptrdiff_t>(request.most), group.rows.end());
     table.groups.push_back(std::move(group));

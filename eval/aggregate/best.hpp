@@ -16,13 +16,15 @@ namespace fusebench::aggregate {
 
 struct BestRequest {
   const registry::RunMetric* metric = nullptr;  ///< of find_ranking_metric()
-  std::string group = "recording";  ///< "recording", "variant", "none" or the key of an edited option
-  std::size_t most = 10;            ///< configurations that a group shows; 0: all
+  std::string group =
+      "none";             ///< "none": all recordings; "recording", "variant" or the key of an edited option
+  std::size_t most = 10;  ///< configurations that a group shows; 0: all
 };
 
 struct BestRow {
-  std::optional<std::size_t> rank;  ///< 1 + configurations that are better by more than the spread over
-                                    ///< replicates; absent without a mean
+  /// 1 of the best and of those that tie with it (RatioMean::tied), else 1 + configurations before it that
+  /// are better; without ratios, by more than the spread over replicates. Absent without a mean.
+  std::optional<std::size_t> rank;
   ConfigurationSummary configuration;
 };
 
@@ -31,6 +33,7 @@ struct BestGroup {
   std::string label;
   std::string kind;                     ///< of recording_kinds()
   std::vector<std::string> recordings;  ///< of RunRow::recorded_part()
+  std::string headline;                 ///< a sentence: the best, its mean ratio, and those that tie with it
   std::size_t configurations = 0;       ///< of which `rows` are the first
   std::vector<BestRow> rows;
 };
@@ -43,8 +46,10 @@ struct BestTable {
   std::vector<std::string> notes;  ///< what a reader must know: what was left out, and the protocol
 };
 
-/// Those that did all of a group's recordings by their mean, then the others by how many they did and their
-/// mean. Error usage: a group that no run can be put into, with the keys that are edited.
+/// Those that did all of a group's recordings by their mean ratio to the best of each recording (by their
+/// mean where a number is not positive), those that tie with the first before the others; then the rest by
+/// how many recordings they did. Error usage: a group that no run can be put into, with the keys that are
+/// edited.
 [[nodiscard]] Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRequest& request);
 
 /// Why a configuration stands behind others: "failed or lost: fr1_rpy; not run: fr1_xyz". Empty if it did

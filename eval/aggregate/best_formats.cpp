@@ -29,11 +29,36 @@ std::string mean_cell(const registry::RunMetric& metric, const ConfigurationSumm
   return registry::shown_text(metric, std::optional(range));
 }
 
+std::string ratio_cell(const RatioMean& ratio) {
+  return ratio.ratio ? fmt::format("{:.2f}", *ratio.ratio) : "-";
+}
+
+std::string interval_cell(const RatioMean& ratio) {
+  return ratio.interval ? fmt::format("{:.2f} to {:.2f}", (*ratio.interval)[0], (*ratio.interval)[1]) : "-";
+}
+
+/// "1.2,1.1,1.3,true": the ratio, its interval, and whether it ties with the best; empty where there is none.
+std::string ratio_csv(const RatioMean& ratio) {
+  const std::string interval =
+      ratio.interval ? fmt::format("{},{}", (*ratio.interval)[0], (*ratio.interval)[1]) : ",";
+  return ratio.ratio ? fmt::format("{},{},{}", *ratio.ratio, interval, ratio.tied) : ",,,";
+}
+
+/// The sentences of few groups stand above the table.
+std::string headlines(const BestTable& table) {
+  constexpr std::size_t kMostGroups = 8;
+  if (table.groups.empty() || table.groups.size() > kMostGroups) return "";
+  std::string text;
+  for (const BestGroup& group : table.groups) text += group.headline + "\n";
+  return text + "\n";
+}
+
 std::string markdown(const BestTable& table, std::size_t width) {
   text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant", "imu"};
   header.insert(header.end(), table.options.begin(), table.options.end());
   const std::size_t text_columns = header.size();
-  header.insert(header.end(), {"rank", std::string(table.metric->heading), "ok", "incomplete"});
+  header.insert(header.end(), {"rank", "times the best", "95 % interval", std::string(table.metric->heading),
+                               "ok", "incomplete"});
   std::vector<text::TableCells> lines = {header};
   std::string more;
   for (const BestGroup& group : table.groups) {
@@ -42,6 +67,8 @@ std::string markdown(const BestTable& table, std::size_t width) {
       for (const std::string& key : table.options)
         cells.push_back(option_cell(row.configuration.options, key));
       cells.push_back(row.rank ? fmt::format("{}", *row.rank) : "-");
+      cells.push_back(ratio_cell(row.configuration.ratio));
+      cells.push_back(interval_cell(row.configuration.ratio));
       cells.push_back(mean_cell(*table.metric, row.configuration));
       cells.push_back(fmt::format("{}/{}", row.configuration.n_ok, row.configuration.n_total));
       cells.push_back(incomplete_note(row.configuration));
@@ -53,8 +80,9 @@ std::string markdown(const BestTable& table, std::size_t width) {
     }
   }
   // No run has the number: the notes say so.
-  std::string text =
-      table.groups.empty() ? "" : text::markdown_table(lines, text_columns, width) + "\n" + more;
+  std::string text = table.groups.empty()
+                         ? ""
+                         : headlines(table) + text::markdown_table(lines, text_columns, width) + "\n" + more;
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   return text;
 }
@@ -62,7 +90,7 @@ std::string markdown(const BestTable& table, std::size_t width) {
 std::string csv(const BestTable& table) {
   std::string text = "group,data,rank,variant,imu";
   for (const std::string& key : table.options) text += fmt::format(",{}", text::csv_cell(key));
-  text += ",metric,unit,mean,least,most,n_ok,n_total,recordings,note\n";
+  text += ",metric,unit,mean,least,most,n_ok,n_total,recordings,note,ratio,ratio_least,ratio_most,tied\n";
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
       const ConfigurationSummary& configuration = row.configuration;
@@ -71,13 +99,13 @@ std::string csv(const BestTable& table) {
                           text::csv_cell(configuration.imu));
       for (const std::string& key : table.options)
         text += fmt::format(",{}", text::csv_cell(option_cell(configuration.options, key)));
-      text += fmt::format(",{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
+      text += fmt::format(",{},{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
                           configuration.mean
                               ? fmt::format("{},{},{}", *configuration.mean, configuration.spread->least,
                                             configuration.spread->most)
                               : ",,",
                           configuration.n_ok, configuration.n_total, group.recordings.size(),
-                          text::csv_cell(incomplete_note(configuration)));
+                          text::csv_cell(incomplete_note(configuration)), ratio_csv(configuration.ratio));
     }
   }
   return text;
@@ -94,6 +122,11 @@ Json json_of(const BestRow& row) {
           {"spread", row.configuration.spread
                          ? Json{row.configuration.spread->least, row.configuration.spread->most}
                          : Json(nullptr)},
+          {"ratio", row.configuration.ratio.ratio ? Json(*row.configuration.ratio.ratio) : Json(nullptr)},
+          {"ratio_interval", row.configuration.ratio.interval ? Json{(*row.configuration.ratio.interval)[0],
+                                                                     (*row.configuration.ratio.interval)[1]}
+                                                              : Json(nullptr)},
+          {"tied", row.configuration.ratio.tied},
           {"n_ok", row.configuration.n_ok},
           {"n_total", row.configuration.n_total},
           {"complete", row.configuration.complete()},
@@ -110,6 +143,7 @@ std::string json(const BestTable& table) {
     groups.push_back({{"group", group.label},
                       {"data", group.kind},
                       {"recordings", group.recordings},
+                      {"headline", group.headline},
                       {"configurations", group.configurations},
                       {"rows", std::move(rows)}});
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
@@ -124,9 +125,21 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
     (measured ? summaries.recordings : summaries.without_number).push_back(name);
   }
   if (summaries.recordings.empty()) return summaries;
-  for (const auto& [key, of_key] : tallies)
-    summaries.configurations.push_back(summary_of(key, of_key, summaries.recordings));
-  std::erase_if(summaries.configurations, [](const ConfigurationSummary& s) { return s.n_total == 0; });
+  ReplicatedValues values(summaries.recordings.size());
+  for (const auto& [key, of_key] : tallies) {
+    ConfigurationSummary summary = summary_of(key, of_key, summaries.recordings);
+    if (summary.n_total == 0) continue;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto found = of_key.find(summaries.recordings[i]);
+      std::vector<double> of_recording =
+          found == of_key.end() ? std::vector<double>() : found->second.all_values();
+      std::ranges::sort(of_recording);  // resamples draw by place, and the order of runs must not count
+      values[i].push_back(std::move(of_recording));
+    }
+    summaries.configurations.push_back(std::move(summary));
+  }
+  const std::vector<RatioMean> ratios = ratio_means(values);
+  for (std::size_t c = 0; c < ratios.size(); ++c) summaries.configurations[c].ratio = ratios[c];
   return summaries;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/aggregate/ratio_means.hpp"
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/registry/replicated_numbers.hpp"
 
@@ -21,6 +22,7 @@ struct ConfigurationSummary {
   std::optional<double> mean;
   /// Of that mean from replicate to replicate; the mean alone where a recording has no replicates.
   std::optional<registry::MedianRange> spread = {};
+  RatioMean ratio = {};                     ///< to the best of each measured recording
   std::size_t n_ok = 0;                     ///< runs that are ok and have the number
   std::size_t n_total = 0;                  ///< runs on the measured recordings
   std::vector<std::string> failed;          ///< recordings on which a run failed or was lost

@@ -30,15 +30,14 @@ Json json_of(const Known<Vector3d>& known) {
   return {{"value", json_of(known.value)}, {"sigma", json_of(known.sigma)}};
 }
 
-/// One line: three values in a unit, their standard deviations, and how many of these they changed by.
-std::string line(std::string_view name, const Vector3d& value, const Vector3d& sigma, const Vector3d& change,
-                 std::string_view unit) {
-  const Vector3d sigmas = change.cwiseQuotient(sigma);
+/// One line: three posterior values in a unit with their standard deviations, and the prior, the values that
+/// the recording had before.
+std::string line(std::string_view name, const Vector3d& posterior, const Vector3d& sigma,
+                 const Vector3d& prior, std::string_view unit) {
   return fmt::format(
-      "{:<28}{:>10.3f} {:>10.3f} {:>10.3f} {:<4} sigma {:.3f} {:.3f} {:.3f}, changed by {:+.3f} {:+.3f} "
-      "{:+.3f} ({:+.1f} {:+.1f} {:+.1f} sigmas)\n",
-      name, value.x(), value.y(), value.z(), unit, sigma.x(), sigma.y(), sigma.z(), change.x(), change.y(),
-      change.z(), sigmas.x(), sigmas.y(), sigmas.z());
+      "{:<28}{:>10.3f} {:>10.3f} {:>10.3f} {:<4} sigma {:.3f} {:.3f} {:.3f}; prior {:.3f} {:.3f} {:.3f}\n",
+      name, posterior.x(), posterior.y(), posterior.z(), unit, sigma.x(), sigma.y(), sigma.z(), prior.x(),
+      prior.y(), prior.z());
 }
 
 std::string known_line(std::string_view name, const Known<Vector3d>& known, double unit,
@@ -93,7 +92,7 @@ std::string sensor_lines(const CameraImuCalibration& c) {
   for (const TimingRow& row : timing_rows(c)) {
     text += fmt::format("{:<28}{:>10.3f} ms   ", row.name, 1e3 * row.value_s);
     text += row.before_sigma_s > 0
-                ? fmt::format("sigma {:.3f}, was {:.3f} with sigma {:.3f}\n", 1e3 * row.sigma_s,
+                ? fmt::format("sigma {:.3f}; prior {:.3f}, sigma {:.3f}\n", 1e3 * row.sigma_s,
                               1e3 * row.before_s, 1e3 * row.before_sigma_s)
                 : std::string("held: exact by the calibration\n");
   }
@@ -126,13 +125,11 @@ std::string to_text(const CameraImuCalibration& c, const recording::Recording& r
   if (recording.imu_source == recording::ImuSource::synthetic)
     text += "synthetic IMU: made from the ground truth; this says nothing about any sensor\n";
   text += line("rotation imu from camera", turn / kDegree, sigma.head<3>() / kDegree,
-               c.rotation_change_rad / kDegree, "deg");
+               so3_log(c.T_imu_camera_before.rotation) / kDegree, "deg");
   text += line("camera in the imu's axes", 1e3 * c.T_imu_camera.translation, 1e3 * sigma.tail<3>(),
-               1e3 * (c.T_imu_camera.translation - c.T_imu_camera_before.translation), "mm");
-  const double change_s = c.time_offset_s - c.time_offset_before_s;
-  text += fmt::format("{:<28}{:>10.3f} ms   sigma {:.3f}, changed by {:+.3f} ({:+.1f} sigmas)\n",
-                      "imu clock minus images'", 1e3 * c.time_offset_s, 1e3 * c.time_offset_sigma_s,
-                      1e3 * change_s, change_s / c.time_offset_sigma_s);
+               1e3 * c.T_imu_camera_before.translation, "mm");
+  text += fmt::format("{:<28}{:>10.3f} ms   sigma {:.3f}; prior {:.3f}\n", "imu clock minus images'",
+                      1e3 * c.time_offset_s, 1e3 * c.time_offset_sigma_s, 1e3 * c.time_offset_before_s);
   text += sensor_lines(c);
   text += known_line("gyroscope bias", c.gyroscope_bias_radps, 1e-3, "mrad/s");
   text += known_line("accelerometer bias", c.accelerometer_bias_mps2, 1e-3, "mm/s2");
@@ -142,7 +139,8 @@ std::string to_text(const CameraImuCalibration& c, const recording::Recording& r
                       c.gravity_sigma_rad / kDegree);
   text += fmt::format(
       "scale: image residuals have {:.4f} times the variance that the filter claims, times {:.2f} for their\n"
-      "correlation over frames (both are in the sigmas above); inertial residuals {:.2f} times the noise of "
+      "correlation over frames (both are part of the sigma values above); inertial residuals {:.2f} times "
+      "the noise of "
       "the\ncalibration; {} outliers\n",
       c.variance_factor, c.correlation_factor, c.inertial_variance_factor, c.outliers);
   text += fmt::format("timing within frames: {:.4f} times the claimed variance, times {:.2f}\n",

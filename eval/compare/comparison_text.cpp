@@ -92,6 +92,10 @@ std::string render_comparison(const RunComparison& comparison, ComparisonFormat 
   return {};
 }
 
+std::string_view verdict_text(GateVerdict verdict) {
+  return verdict == GateVerdict::suspect ? "POSSIBLE SLOWDOWN" : to_string(verdict);
+}
+
 std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bool all) {
   std::vector<ComparisonLine> lines;
   for (const ComparedRun& run : comparison.runs) {
@@ -111,14 +115,14 @@ std::string comparison_summary(const RunComparison& comparison) {
       "{}: {}, {}, {} in {}; trajectories: {} bit-identical, {} diverging",
       comparison.passed() ? "PASS" : "FAIL", counted(comparison.count(GateVerdict::regression), "regression"),
       counted(comparison.count(GateVerdict::improvement), "improvement"),
-      counted(comparison.count(GateVerdict::suspect), "suspect"), counted(comparison.runs.size(), "run"),
-      comparison.identical(), comparison.diverging().size());
+      counted(comparison.count(GateVerdict::suspect), "possible slowdown"),
+      counted(comparison.runs.size(), "run"), comparison.identical(), comparison.diverging().size());
 }
 
 std::vector<std::string> comparison_remarks(const RunComparison& comparison) {
   std::vector<std::string> remarks;
   for (const ComparedRun* run : comparison.diverging())
-    remarks.push_back(fmt::format("{} {}", printable(run->runs.label, kAll), run->divergence->text()));
+    remarks.push_back(fmt::format("{}: {}", printable(run->runs.label, kAll), run->divergence->text()));
   for (const ComparedRun& run : comparison.runs) {
     for (const GateResult& gate : run.gates) {
       if (gate.gate == "trajectory" && gate.verdict == GateVerdict::note && !run.divergence)
@@ -134,7 +138,7 @@ std::string comparison_text(const RunComparison& comparison, bool all, std::size
   std::string text = comparison_summary(comparison) + "\n";
   std::vector<std::vector<std::string>> cells;
   for (const ComparisonLine& line : comparison_lines(comparison, all))
-    cells.push_back({std::string(to_string(line.verdict)), line.run, line.gate, line.message});
+    cells.push_back({std::string(verdict_text(line.verdict)), line.run, line.gate, line.message});
   if (!cells.empty()) text += fmt::format("\n{}", text::fitted_columns(cells, width));
   const std::vector<std::string> remarks = comparison_remarks(comparison);
   if (!remarks.empty()) text += "\n";

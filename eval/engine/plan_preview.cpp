@@ -88,7 +88,8 @@ std::string summary(const PlanPreview& preview, const BatchPlan& plan, int at_on
   if (preview.guessed > 0)
     text += fmt::format(" ({} of the runs by a guess of {:.0f} ms a frame: none like them has finished here)",
                         preview.guessed, 1000 * kGuessPerFrame_s);
-  if (preview.unknown > 0) text += "; what is unknown is not counted";
+  if (preview.unknown > 0)
+    text += fmt::format("; the estimate excludes {} run{}", preview.unknown, preview.unknown == 1 ? "" : "s");
   return text + "\n";
 }
 

@@ -53,7 +53,7 @@ std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& rati
   text += low > 1 || high < 1 ? ": more than the differences between recordings explain."
                               : ": the interval holds 1, so it may be noise between recordings.";
   if (ranking.configurations.size() > 2) {
-    text += fmt::format(" The interval takes no account of that it is the best of {}.",
+    text += fmt::format(" The interval is not corrected for picking the best of {}.",
                         ranking.configurations.size());
   }
   return text;
@@ -83,16 +83,15 @@ std::string best_sentence(const Ranking& ranking) {
   const RankedConfiguration& best = ranking.configurations.front();
   const std::string name = name_and_unit(*ranking.metric).first;
   std::string where = ranking.recordings == 1
-                          ? fmt::format("one {} recording", ranking.data)
-                          : fmt::format("{} {} recordings", ranking.recordings, ranking.data);
+                          ? fmt::format("one {} recording", ranking.data_word())
+                          : fmt::format("{} {} recordings", ranking.recordings, ranking.data_word());
   if (!ranking.frames.empty()) where += ", " + ranking.frames;
   if (!best.value) {
     return fmt::format("Nothing has an {} on all of {}; {} has it on most, {}.", name, where, best.label,
                        best.recordings);
   }
-  const std::string number =
-      shown(*ranking.metric, *best.value) +
-      (ranking.recordings > 1 ? " (geometric mean; means in the table of results are arithmetic)" : "");
+  const std::string number = shown(*ranking.metric, *best.value) +
+                             (ranking.recordings > 1 ? " (geometric mean over recordings)" : "");
   if (ranking.configurations.size() == 1) {
     return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
                        number, where);
@@ -211,8 +210,9 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
                                     counted(table.rows.size(), "run"), list_of(bad, "; ")));
   }
   if (!silent.empty()) {
-    sentences.push_back(fmt::format("Poses that were claimed and are wrong, in {} that ended well: {}.",
-                                    counted(silent.size(), "run"), list_of(silent, "; ")));
+    sentences.push_back(fmt::format(
+        "Undetected failures (poses that are wrong and not reported as lost) in {} that ended well: {}.",
+        counted(silent.size(), "run"), list_of(silent, "; ")));
   }
   if (!lost.empty()) {
     sentences.push_back(

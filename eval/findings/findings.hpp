@@ -18,7 +18,7 @@ namespace fusebench::findings {
 /// no run has both.
 [[nodiscard]] std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs);
 
-/// What was lost, in whole or in part, failed or is silently wrong, and where. A sentence that nothing did if
+/// What was lost, in whole or in part, failed or failed undetected, and where. A sentence that nothing did if
 /// nothing did.
 [[nodiscard]] std::vector<std::string> failures_of(const tables::ResultTable& table);
 

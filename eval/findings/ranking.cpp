@@ -122,6 +122,7 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
       at->configuration.description = description_of(runs[row.members.front()].record);
     }
     RankedConfiguration& configuration = at->configuration;
+    configuration.rows.push_back(i);
     configuration.runs += row.members.size();
     configuration.imu_from_truth |= row.imu == "synthetic IMU";
     configuration.ok += row.ok_members;

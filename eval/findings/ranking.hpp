@@ -20,6 +20,7 @@ struct RankedConfiguration {
   std::string variant;
   std::string description;  ///< in a line
   bool imu_from_truth = false;
+  std::vector<std::size_t> rows = {};  ///< of the table: its repetitions on all recordings
   std::size_t runs = 0;
   std::size_t ok = 0;
   std::size_t recordings = 0;  ///< of those that it has a number of
@@ -44,6 +45,9 @@ struct Ranking {
   std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number
   /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
   std::vector<RankedConfiguration> configurations;
+
+  /// `data` in a sentence: "real", "simulated".
+  [[nodiscard]] std::string data_word() const { return data == "recorded" ? "real" : data; }
 };
 
 /// By ATE, or by AIE on common pixels where there is no ATE, or by AIE where there is one configuration and

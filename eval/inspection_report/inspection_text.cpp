@@ -58,10 +58,9 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
                                  d.max_m, d.median_m, 100 * d.beyond_10m_share));
   if (i.registration) {
     const inspection::measures::RegistrationFit& fit = *i.registration;
-    depth.add(
-        "edges on colour",
-        fmt::format("best when moved by {:.1f} px (uncertain by {:.1f} px), better in {:.0f} % of frames",
-                    fit.moved_px, fit.spread_px, 100 * fit.better_share));
+    depth.add("depth-colour misregistration",
+              fmt::format("{:.1f} px +- {:.1f}; edges fit better there in {:.0f} % of frames", fit.moved_px,
+                          fit.spread_px, 100 * fit.better_share));
   }
   depth.append_to(all);
 }
@@ -100,7 +99,9 @@ void truth_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
     const std::string value = h.value == 0                    ? ""
                               : h.code == "truth-time-offset" ? fmt::format(", by {:+.1f} ms", 1e3 * h.value)
                                                               : fmt::format(", factor {:.3f}", h.value);
-    warped.add("if " + h.name, fmt::format("{:.2f} times the residuals{}", h.factor, value));
+    warped.add("hypothesis: " + h.name,
+               fmt::format("{} ({:.{}f} times the residuals{})", i.has(h.code) ? "accepted" : "rejected",
+                           h.factor, h.factor < 2 ? 2 : 1, value));
   }
   warped.append_to(all);
 }

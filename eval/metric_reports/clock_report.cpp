@@ -38,7 +38,7 @@ std::string clock_text(const reference_clock::ReferenceClock& clock) {
       {"RPE 1 s rmse [m]", shown(as_read.rpe_1s_m, 1), shown(fitted.rpe_1s_m, 1)},
       {"RPE 1 s rmse [deg]", shown(as_read.rpe_1s_rad, kDegreesPerRadian),
        shown(fitted.rpe_1s_rad, kDegreesPerRadian)},
-      {"silent failures", shown_count(as_read.silent), shown_count(fitted.silent)}};
+      {"undetected failures", shown_count(as_read.silent), shown_count(fitted.silent)}};
   return fmt::format("reference clock: {}\n\n{}", offset_text(clock.offset), text::aligned_columns(lines));
 }
 

@@ -116,7 +116,10 @@ Json json_of(const Chart& chart, std::size_t part) {
   for (std::size_t place = 0; place < chart.series.size(); ++place) {
     const ChartSeries& s = chart.series[place];
     Json points = Json::array();
-    for (const Vector2d& point : s.points) points.push_back({number(point.x()), number(point.y())});
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      points.push_back({number(s.points[i].x()), number(s.points[i].y())});
+      if (!s.values.empty()) points.back().push_back(number(s.values[i]));
+    }
     for (const ChartBox& box : s.boxes) {
       points.push_back({number(box.x), number(box.min), number(box.quartile), number(box.median),
                         number(box.upper_quartile), number(box.max)});
@@ -139,6 +142,7 @@ Json json_of(const Chart& chart, std::size_t part) {
           {"xRange", json_of(chart.x_range)},
           {"yRange", json_of(chart.y_range)},
           {"part", part},
+          {"top", chart.value_colours ? Json(number(chart.value_colours->top)) : Json(nullptr)},
           {"series", series}};
 }
 

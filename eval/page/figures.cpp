@@ -83,7 +83,8 @@ void add_data(const Chart& chart, std::string& script) {
     const bool segments = series.style == SeriesStyle::segments;
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       const Vector2d& p = series.points[k];
-      fmt::format_to(out, "{:.6g} {:.6g}\n{}", p.x(), p.y(), segments && k % 2 == 1 ? "\n" : "");
+      const std::string value = series.values.empty() ? "" : fmt::format(" {:.6g}", series.values[k]);
+      fmt::format_to(out, "{:.6g} {:.6g}{}\n{}", p.x(), p.y(), value, segments && k % 2 == 1 ? "\n" : "");
     }
     for (const ChartBox& b : series.boxes) {
       fmt::format_to(out, "{:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", b.x, b.quartile, b.min, b.max,
@@ -91,6 +92,15 @@ void add_data(const Chart& chart, std::string& script) {
     }
     script += "END\n";
   }
+}
+
+/// The colour bar of lines that are coloured by their values: viridis, as on pages.
+std::string value_colours(const Chart& chart) {
+  if (!chart.value_colours) return "";
+  return fmt::format(
+      "set palette defined (0 '#440154', 1 '#3e4a89', 2 '#26828e', 3 '#35b779', 4 '#b4de2c', 5 '#fde725')\n"
+      "set cbrange [0:{:.6g}]\nset cblabel {}\n",
+      chart.value_colours->top, gnuplot_text(chart.value_colours->label));
 }
 
 /// Boxes at one place stand side by side.
@@ -123,6 +133,8 @@ std::string curve(const Chart& chart, std::size_t i) {
   const char* const axes = series.right ? " axes x1y2" : "";
   switch (series.style) {
     case SeriesStyle::line:
+      if (!series.values.empty())
+        return fmt::format("$series{} using 1:2:3 with lines lw 2 lc palette title {}", i, title);
       return fmt::format("$series{}{} with lines lw 1.4{} lc rgb '{}' title {}", i, axes,
                          dashes(lines_before(chart, i)), colour, title);
     case SeriesStyle::backdrop:
@@ -243,6 +255,7 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
     script += fmt::format("set y2label {}\nset y2tics\n", gnuplot_text(chart.right_label));
   if (chart.equal_scale) {
     script += equal_axes(chart);
+    script += value_colours(chart);
   } else if (chart.y_range) {
     script += fmt::format("set yrange [{:.6g}:{:.6g}]\n", chart.y_range->x(), chart.y_range->y());
   } else if (chart.from_zero) {

@@ -63,7 +63,8 @@ std::string number_columns(const PageTable& table) {
 }
 
 std::string html_of(const PageTable& table) {
-  const std::string classes = number_columns(table);
+  std::string classes = number_columns(table);
+  if (table.sortable) classes += classes.empty() ? "sortable" : " sortable";
   std::string html = "<div class=\"scroll\"><table";
   html += classes.empty() ? ">\n" : fmt::format(" class=\"{}\">\n", classes);
   if (!table.header.empty()) {
@@ -74,7 +75,8 @@ std::string html_of(const PageTable& table) {
   }
   html += "<tbody>\n";
   for (const PageTable::Row& row : table.rows) {
-    html += row.style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", row.style);
+    const std::string style = row.style + (row.fixed ? row.style.empty() ? "fixed" : " fixed" : "");
+    html += style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", style);
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const bool best = std::ranges::find(row.best, i) != row.best.end();
       html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "", escaped(row.cells[i]));
@@ -84,14 +86,22 @@ std::string html_of(const PageTable& table) {
   return html + "</tbody></table></div>\n";
 }
 
+std::string colour_bar(const Chart& chart) {
+  if (!chart.value_colours) return "";
+  return fmt::format(
+      "<div class=\"colourbar\"><span>0</span><span class=\"ramp\"></span><span>{:.3g} and more</span>"
+      "<span>{}</span></div>",
+      chart.value_colours->top, escaped(chart.value_colours->label));
+}
+
 std::string html_of(const std::vector<Chart>& charts, std::size_t part, Json& all) {
   std::string html = "<div class=\"charts\">\n";
   for (const Chart& chart : charts) {
     html += fmt::format(
         "<figure><h3>{}</h3><div class=\"canvas{}\"><canvas id=\"chart-{}\" role=\"img\" "
-        "aria-label=\"{}\"></canvas></div><figcaption>{}</figcaption></figure>\n",
+        "aria-label=\"{}\"></canvas></div>{}<figcaption>{}</figcaption></figure>\n",
         escaped(chart.title), chart.equal_scale ? " square" : "", all.size(), escaped(chart.title),
-        escaped(chart.caption));
+        colour_bar(chart), escaped(chart.caption));
     all.push_back(json_of(chart, part));
   }
   return html + "</div>\n";
@@ -139,10 +149,15 @@ struct Drawn {
   Json scenes = Json::array();
 };
 
-/// part: the place of the section that begins its part.
-std::string html_of(const PageSection& section, std::size_t place, std::size_t part, Drawn& drawn) {
-  std::string html =
+std::string heading_of(const PageSection& section, std::size_t place) {
+  const std::string heading =
       fmt::format("<h{0} id=\"section-{1}\">{2}</h{0}>\n", section.level, place, escaped(section.title));
+  return section.folded ? "<details class=\"fold\"><summary>" + heading + "</summary>\n" : heading;
+}
+
+/// What is below a heading. part: the place of the section that begins its part.
+std::string content_of(const PageSection& section, std::size_t part, Drawn& drawn) {
+  std::string html;
   if (!section.text.empty()) html += fmt::format("<p>{}</p>\n", escaped(section.text));
   if (const auto* table = std::get_if<PageTable>(&section.content)) return html + html_of(*table);
   if (const auto* list = std::get_if<std::vector<Chart>>(&section.content))
@@ -156,20 +171,28 @@ std::string html_of(const PageSection& section, std::size_t place, std::size_t p
   return html + html_of(std::get<std::vector<PageImage>>(section.content), section);
 }
 
+/// first: the section that began it.
+std::string end_of_part(const PageSection& first) {
+  return first.folded ? "</details>\n</section>\n" : "</section>\n";
+}
+
 /// All sections; those of a part, which a section of level 2 begins, stand in an element of their own.
 std::string body_of(const Page& page, Drawn& drawn) {
   std::string body;
   std::size_t part = 0;
   for (std::size_t place = 0; place < page.sections.size(); ++place) {
     const PageSection& section = page.sections[place];
-    if (place == 0 || section.level == 2) {
+    const bool begins_part = place == 0 || section.level == 2;
+    if (begins_part) {
+      if (place > 0) body += end_of_part(page.sections[part]);
       part = place;
-      body += fmt::format("{}<section class=\"part{}\" id=\"part-{}\">\n", place > 0 ? "</section>\n" : "",
-                          section.timeline ? " timeline" : "", part);
+      body += fmt::format("<section class=\"part{}\" id=\"part-{}\">\n", section.timeline ? " timeline" : "",
+                          part);
     }
-    body += html_of(section, place, part, drawn);
+    body += heading_of(section, place) + content_of(section, part, drawn);
+    if (section.folded && !begins_part) body += "</details>\n";
   }
-  return page.sections.empty() ? body : body + "</section>\n";
+  return page.sections.empty() ? body : body + end_of_part(page.sections[part]);
 }
 
 /// Links to the main sections, where there are many.

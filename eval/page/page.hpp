@@ -21,9 +21,11 @@ struct PageTable {
     std::vector<std::string> cells;
     std::string style;                   ///< "error", "warning", "note" or empty
     std::vector<std::size_t> best = {};  ///< places of the cells that are the best of their kind
+    bool fixed = false;                  ///< stays at its place when the table is sorted: a mean, a sum
   };
   std::vector<std::string> header;
   std::vector<Row> rows;
+  bool sortable = false;  ///< by a click on a heading; needs the script
 };
 
 /// How many colours the style has for series: --series-0 and so on. They repeat.
@@ -57,6 +59,14 @@ struct ChartSeries {
   std::optional<std::size_t> colour = {};  ///< of the style's; by default the series' place in its chart
   std::vector<ChartBox> boxes = {};        ///< with SeriesStyle::boxes, in place of points
   bool on_request = false;                 ///< drawn after a click on its name; not in figures
+  std::vector<double> values = {};         ///< one a point: colours the line, by ValueColours of the chart
+};
+
+/// The colour bar of a chart whose lines are coloured by their values: from zero to `top`, beyond which all
+/// have the last colour.
+struct ValueColours {
+  std::string label;  ///< "position error [cm]"
+  double top = 1;
 };
 
 struct Chart {
@@ -74,6 +84,7 @@ struct Chart {
   /// where there is none.
   std::optional<Vector2d> x_range = {};
   std::optional<Vector2d> y_range = {};  ///< of the axis on the left
+  std::optional<ValueColours> value_colours = {};
   std::vector<ChartSeries> series;
 };
 
@@ -96,7 +107,7 @@ struct TimedPose {
   SE3 T_scene_camera;
 };
 
-/// The way of a camera, drawn beside the mesh of that label.
+/// The path of a camera, drawn beside the mesh of that label.
 struct ScenePath {
   std::string label;
   std::size_t colour = 0;
@@ -134,6 +145,8 @@ struct PageSection {
                PageParagraphs>
       content;
   int level = 2;  ///< of the heading; level 2 stands in the page's list of contents, and begins a part
+  /// Closed until its heading is clicked, and open on paper. Of level 2: with all of its part.
+  bool folded = false;
   std::size_t image_columns = 0;  ///< of images where there is room; 0: as many as fit
   bool strip = false;             ///< images in one row, small, to scroll through
   bool timeline = false;          ///< of a part: one time for all of its charts, images and cameras

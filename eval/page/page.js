@@ -40,11 +40,30 @@ function pointsOf(series) {
 const orders = { backdrop: 1, band: 2, segments: 0.5 };
 const widths = { dots: 0, boxes: 0, backdrop: 4, segments: 0.8, band: 0.5 };
 
-function dataset(series) {
+/// Viridis, as the colour bar has it (page.css).
+const ramp = [[68, 1, 84], [62, 74, 137], [38, 130, 142], [53, 183, 121], [180, 222, 44], [253, 231, 37]];
+
+/// share: of the largest value. Grey where it is unknown.
+function rampColour(share) {
+  if (share === null || !isFinite(share)) return "rgb(170,170,170)";
+  const at = Math.min(Math.max(share, 0), 1) * (ramp.length - 1);
+  const below = Math.min(Math.floor(at), ramp.length - 2);
+  const mixed = ramp[below].map((c, i) => Math.round(c + (at - below) * (ramp[below + 1][i] - c)));
+  return `rgb(${mixed.join(",")})`;
+}
+
+/// Each segment has the colour of the value at its end.
+function segmentColours(series, top) {
+  if (!top || series.points.length === 0 || series.points[0].length < 3) return {};
+  return { borderWidth: 3, segment: { borderColor: (segment) => rampColour(series.points[segment.p1DataIndex][2] / top) } };
+}
+
+/// top: the value of the last colour of lines that are coloured by their values.
+function dataset(series, top) {
   const stroke = strokeOf(series);
   const boxes = series.style === "boxes";
   const filled = series.style === "bars" || series.style === "band";
-  return {
+  return Object.assign({
     label: series.label,
     data: pointsOf(series),
     hidden: series.hidden,
@@ -63,7 +82,7 @@ function dataset(series) {
     showLine: series.style !== "dots" && !boxes,
     fill: filled ? "origin" : false,
     spanGaps: false,
-  };
+  }, segmentColours(series, top));
 }
 
 /// Bars that stand on one another, one stack a category.
@@ -113,11 +132,25 @@ function shortened(context, text, room) {
   return short;
 }
 
-/** Names fit the chart. Dots are round in a legend, too, whose other symbols are wide. */
+/// A piece of the series' line, with its dashes.
+function lineSwatch(series) {
+  const name = "http://www.w3.org/2000/svg";
+  const picture = document.createElementNS(name, "svg");
+  const line = document.createElementNS(name, "line");
+  const put = (element, values) => Object.entries(values).forEach(([key, value]) => element.setAttribute(key, value));
+  put(picture, { width: 28, height: 8, "aria-hidden": "true" });
+  put(line, { x1: 0, x2: 28, y1: 4, y2: 4, "stroke-dasharray": (series.dashes || []).join(" "), "stroke-width": series.style === "backdrop" ? 5 : 2.5 });
+  line.style.stroke = "var(--series-" + (series.colour % seriesColours) + ")";
+  picture.append(line);
+  return picture;
+}
+
+/** Names fit the chart, and lines have the dashes of their curves. Dots are round in a legend, too, whose other symbols are wide. */
 function legendLabels(made) {
   const labels = Chart.defaults.plugins.legend.labels.generateLabels(made);
   for (const label of labels) {
     label.text = shortened(made.ctx, label.text, made.width - 60);
+    if (label.pointStyle === "line") label.lineDash = made.data.datasets[label.datasetIndex].borderDash || [];
     if (label.pointStyle === "circle") label.pointStyle = dotOf(label.fillStyle);
   }
   return labels;
@@ -143,7 +176,7 @@ function drawChart(chart, index) {
     type: bars ? "bar" : "line",
     data: {
       labels: bars ? chart.categories.map(linesOf) : undefined,
-      datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
+      datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series, chart.top)),
     },
     options: {
       animation: false,
@@ -211,6 +244,66 @@ function labelCells() {
   });
 }
 
+/// The first number of a cell: of "1.22 [1.10, 1.40]" 1.22. Nothing of "-", "lost" and texts.
+function numberOf(cell) {
+  const number = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/.exec(cell.textContent.trim());
+  return number ? Number(number[0]) : null;
+}
+
+/** Numbers by value, before texts; texts by their letters. Rows that are equal keep their order. */
+function compareCells(a, b) {
+  const [x, y] = [numberOf(a), numberOf(b)];
+  if (x !== null && y !== null) return x - y;
+  if (x !== null || y !== null) return x !== null ? -1 : 1;
+  return a.textContent.localeCompare(b.textContent, "en");
+}
+
+/// Rows that are fixed (means) stay at the end.
+function sortBy(table, column, descending) {
+  const rows = [...table.tBodies[0].rows];
+  const moved = rows.filter((row) => !row.classList.contains("fixed"));
+  const sign = descending ? -1 : 1;
+  moved.sort((a, b) => {
+    const order = compareCells(a.cells[column], b.cells[column]);
+    const missing = (numberOf(a.cells[column]) === null) !== (numberOf(b.cells[column]) === null);
+    return missing ? order : sign * order;  // what has no number comes last in either direction
+  });
+  table.tBodies[0].append(...moved, ...rows.filter((row) => row.classList.contains("fixed")));
+}
+
+/// A heading is a button: a click sorts by its column, another one the other way round.
+function offerSorting() {
+  document.querySelectorAll("table.sortable").forEach((table) => {
+    const headings = [...table.querySelectorAll("thead th")];
+    headings.forEach((heading, column) => {
+      const sort = () => {
+        const descending = heading.getAttribute("aria-sort") === "ascending";
+        headings.forEach((other) => other.removeAttribute("aria-sort"));
+        heading.setAttribute("aria-sort", descending ? "descending" : "ascending");
+        sortBy(table, column, descending);
+      };
+      heading.setAttribute("role", "button");
+      heading.tabIndex = 0;
+      heading.title = "sort by this column";
+      heading.addEventListener("click", sort);
+      heading.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        sort();
+      });
+    });
+  });
+}
+
+let openedForPaper = [];
+
+/// Paper has no clicks: what is folded is open there.
+function unfoldForPaper(paper) {
+  if (paper) openedForPaper = [...document.querySelectorAll("details.fold:not([open])")];
+  openedForPaper.forEach((details) => { details.open = paper; });
+  if (!paper) openedForPaper = [];
+}
+
 /// Of charts on paper, in pixels: such that texts are as large as those beside them. page.css has the same shapes.
 const paperSize = { view: [310, 310], chart: [410, 300] };
 const leastOnPaper = 120;  // height of what is drawn
@@ -236,8 +329,9 @@ function drawForPaper(paper) {
 }
 
 labelCells();
+offerSorting();
 draw();
 description.forEach(offerWhole);
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
-window.addEventListener("beforeprint", () => drawForPaper(true));
-window.addEventListener("afterprint", () => drawForPaper(false));
+window.addEventListener("beforeprint", () => { unfoldForPaper(true); drawForPaper(true); });
+window.addEventListener("afterprint", () => { drawForPaper(false); unfoldForPaper(false); });

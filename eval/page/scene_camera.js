@@ -1,4 +1,4 @@
-// Where the camera of a 3D view stands at first, and how the way of a recording's camera is drawn.
+// Where the camera of a 3D view stands at first, and how a recording's camera path is drawn.
 "use strict";
 
 /// Positions of the paths that are not far from the meshes: a lost camera's would make them small.

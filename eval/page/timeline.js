@@ -45,7 +45,8 @@
     const bar = document.createElement("div");
     bar.className = "timebar";
     const first = host.querySelector("h3[id]");
-    host.insertBefore(bar, first);
+    const below = first && first.parentElement.tagName === "SUMMARY" ? first.closest("details") : first;
+    (below ? below.parentElement : host).insertBefore(bar, below);
     const preview = strip.length > 0 ? element("img", bar) : null;
     if (preview) preview.alt = "";
     const controls = element("div", bar);
@@ -58,11 +59,11 @@
 
     // The runs: those of the first chart that names several.
     const named = all.map(({ chart }) => chart).find((chart) => chart.equal) || timed[0].chart;
-    named.series.forEach((series) => {
-      const button = element("button", legend, series.label);
+    withDashes(named.series).forEach((series) => {
+      const button = element("button", legend);
       button.type = "button";
+      button.append(lineSwatch(series), series.label);
       button.dataset.run = series.label;
-      button.style.setProperty("--swatch", "var(--series-" + (series.colour % seriesColours) + ")");
       button.setAttribute("aria-pressed", String(!series.hidden));
       button.addEventListener("click", () => showRun(part, series.label, button.getAttribute("aria-pressed") !== "true"));
     });

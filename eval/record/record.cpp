@@ -237,7 +237,7 @@ double coverage_share(const RecordedFrames& frames) {
 
 std::string status_text(RunStatus status, std::optional<std::size_t> silent) {
   if (silent.value_or(0) == 0) return std::string(to_string(status));
-  return fmt::format("{} ({} silent)", to_string(status), *silent);
+  return fmt::format("{} ({} undetected)", to_string(status), *silent);
 }
 
 std::optional<RunStatus> parse_run_status(std::string_view text) {

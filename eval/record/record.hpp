@@ -52,7 +52,7 @@ enum class PoseKind {
 };
 [[nodiscard]] std::string_view to_string(PoseKind poses);
 [[nodiscard]] std::optional<PoseKind> parse_pose_kind(std::string_view text);
-/// The status as people see it: "ok (12 silent)" where so many of the poses that were claimed are wrong.
+/// The status as people see it: "ok (12 undetected)" where so many of the poses that were claimed are wrong.
 [[nodiscard]] std::string status_text(RunStatus status, std::optional<std::size_t> silent);
 
 /// A metric's result, or why there is none.
@@ -154,7 +154,7 @@ struct RecordedMetrics {
   Outcome<RecordedPoseIntensity> pose_intensity;
   Outcome<reference_clock::ReferenceClock> reference_clock;
 
-  /// Number of silent failures, where there is truth to tell them by.
+  /// Number of undetected failures, where there is truth to tell them by.
   [[nodiscard]] std::optional<std::size_t> silent_frames() const {
     return silent.value ? std::optional(silent.value->failures.silent) : std::nullopt;
   }

@@ -16,7 +16,7 @@ struct ClockedErrors {
   std::optional<double> ate_rmse_m;
   std::optional<double> rpe_1s_m;  ///< rmse over 1 s
   std::optional<double> rpe_1s_rad;
-  std::optional<std::size_t> silent;  ///< silent failures
+  std::optional<std::size_t> silent;  ///< undetected failures
 };
 
 /// The fitted offset, and what it changes.
@@ -36,7 +36,7 @@ inline constexpr std::string_view kClockProtocol =
 /// The reference on the estimate's clock: offset_s is subtracted from its stamps.
 [[nodiscard]] Trajectory on_estimate_clock(Trajectory reference, double offset_s);
 
-/// ATE and RPE over 1 s by TUM's protocol, and silent failures by their default limits.
+/// ATE and RPE over 1 s by TUM's protocol, and undetected failures by their default limits.
 [[nodiscard]] ClockedErrors clocked_errors(const Trajectory& reference, const Trajectory& estimate);
 
 /// Fits the offset and computes both errors. Errors: those of fitted_time_offset().

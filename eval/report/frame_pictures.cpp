@@ -171,8 +171,8 @@ std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& r
   std::vector<page::PageImage> kept = kept_images(framed, patches);
   const std::string sentence = fmt::format("No images of the recording ({}).{}", why, remedy);
   if (kept.empty()) return {{kTitle, sentence, page::PageParagraphs{}, 3}};
-  return {
-      {kTitle, sentence + " These are the frames that runs kept with their patches.", std::move(kept), 3, 4}};
+  return {{kTitle, sentence + " These are the frames that runs kept with their patches.", std::move(kept), 3,
+           false, 4}};
 }
 
 }  // namespace fusebench::report

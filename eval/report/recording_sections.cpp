@@ -91,6 +91,8 @@ void add_curves(Sections& sections, std::span<const run_charts::RunSeries> serie
       revised ? "Poses as each was known when its frame came; final ones are under Loops and final poses."
               : "";
   add_charts(sections, "Trajectories", run_charts::view_charts(series, detail.buckets), which);
+  add_charts(sections, "Trajectories coloured by their error",
+             run_charts::error_path_charts(series, detail.buckets), which);
   add_charts(sections, "Position over time", run_charts::position_charts(series, detail.buckets), which);
   add_charts(sections, "Errors", run_charts::error_charts(series, detail.buckets), which);
   for (page::PageSection& section : loop_sections(series, detail.buckets))
@@ -167,10 +169,11 @@ RecordingSections recording_sections(RunsOfRecording group, const PageContext& c
   add_patches(sections, patches, series);
   if (page::PageScene scene = model_scene(series, {detail.triangles, detail.buckets}, result.warnings);
       !scene.meshes.empty()) {
-    sections.push_back({"Models",
-                        "Simplified for this page; mesh.ply of each run has all triangles. Lines: the way of "
-                        "the camera, and where it was at the chosen time.",
-                        std::move(scene), 3});
+    sections.push_back(
+        {"Models",
+         "Simplified for this page; mesh.ply of each run has all triangles. Lines: camera path, "
+         "and where the camera was at the chosen time.",
+         std::move(scene), 3});
   }
   add_charts(sections, "Health and time", run_charts::tracking_charts(series, detail.buckets));
   add_charts(sections, "Profiles", run_charts::profile_charts(series));

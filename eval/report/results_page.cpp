@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "eval/page/series_colours.hpp"
 #include "eval/report/recording_sections.hpp"
@@ -34,6 +35,14 @@ std::vector<std::size_t> colours_of(const std::vector<run_files::FoundRun>& runs
   return page::series_colours(names);
 }
 
+/// Each recording has some twenty charts, and a sweep has charts above them: the last ones would be far
+/// below.
+bool has_many_charts(std::size_t recordings, const std::vector<std::string>& methods) {
+  constexpr std::size_t kMostRecordings = 2;
+  constexpr std::size_t kMostMethods = 6;
+  return recordings > kMostRecordings || std::set(methods.begin(), methods.end()).size() > kMostMethods;
+}
+
 }  // namespace
 
 ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title,
@@ -52,8 +61,10 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
   const PageContext context{runs, methods, colours_of(runs, methods), detail_for(drawn, groups.size()),
                             reader};
   speed_failures::FailureSections failures;
-  for (const RunsOfRecording group : groups) {
-    RecordingSections recording = recording_sections(group, context, failures);
+  const bool folded = has_many_charts(groups.size(), methods);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    RecordingSections recording = recording_sections(groups[i], context, failures);
+    if (folded && !recording.sections.empty()) recording.sections.front().folded = true;
     std::ranges::move(recording.sections, std::back_inserter(result.page.sections));
     std::ranges::move(recording.warnings, std::back_inserter(result.warnings));
   }

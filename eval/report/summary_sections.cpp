@@ -9,6 +9,7 @@
 
 #include "eval/findings/findings.hpp"
 #include "eval/findings/ranking.hpp"
+#include "eval/report/overview_section.hpp"
 #include "eval/tables/systems_table.hpp"
 #include "eval/tables/table.hpp"
 
@@ -22,12 +23,14 @@ page::PageTable page_table(const tables::ResultTable& table) {
   page::PageTable page;
   const auto lines = tables::table_cells(table);
   page.header = lines.front();
+  page.sortable = true;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const record::RunStatus status =
         i <= table.rows.size() ? table.rows[i - 1].status : record::RunStatus::ok;
     page.rows.push_back({lines[i], status == record::RunStatus::failed ? "error"
                                    : status == record::RunStatus::lost ? "warning"
                                                                        : ""});
+    page.rows.back().fixed = i > table.rows.size();  // a mean
     if (i <= table.rows.size()) page.rows.back().best = tables::best_cells(table, table.rows[i - 1]);
   }
   return page;
@@ -84,12 +87,13 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
       "Geometric means over {} {} recording{}; ratios and their intervals (Student's t on logarithms) over "
       "the "
       "recordings that both have numbers of.",
-      ranking.recordings, ranking.data, ranking.recordings == 1 ? "" : "s");
+      ranking.recordings, ranking.data_word(), ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
   const std::string frames = ranking.frames.empty() ? "" : ", " + ranking.frames;
-  return {only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data, frames),
-          std::move(text), std::move(table), 3};
+  return {
+      only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data_word(), frames),
+      std::move(text), std::move(table), 3, true};
 }
 
 /// The table of systems and how to read it, where it says more than the table of runs.
@@ -102,10 +106,11 @@ void add_systems(const std::vector<run_files::FoundRun>& runs, std::vector<page:
     const tables::SystemRow& row = systems.rows[i];
     table.rows.push_back({lines[i + 1], row.runs == 0 ? "note" : row.ok < row.runs ? "warning" : ""});
   }
-  sections.push_back({"Systems", "A row a recording, system and kind of poses.", std::move(table)});
+  table.sortable = true;
+  sections.push_back({"Systems", "A row a recording, system and kind of poses.", std::move(table), 2, true});
   std::vector<std::string> remarks = systems.footer;
   remarks.insert(remarks.end(), systems.notes.begin(), systems.notes.end());
-  sections.push_back({"How to read the table of systems", "", lines_table(remarks), 3});
+  sections.push_back({"How to read the table of systems", "", lines_table(remarks), 3, true});
 }
 
 }  // namespace
@@ -113,7 +118,10 @@ void add_systems(const std::vector<run_files::FoundRun>& runs, std::vector<page:
 std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs) {
   const tables::ResultTable table = tables::table_of(runs);
   const std::vector<findings::Ranking> rankings = findings::rankings_of(runs, table);
-  std::vector<page::PageSection> sections = {findings_section(runs, table, rankings)};
+  std::vector<page::PageSection> sections;
+  for (const findings::Ranking& ranking : rankings)
+    sections.push_back(overview_section(ranking, table, rankings.size() == 1));
+  sections.push_back(findings_section(runs, table, rankings));
   for (const findings::Ranking& ranking : rankings)
     sections.push_back(compared_section(ranking, rankings.size() == 1));
   const bool revised = std::ranges::any_of(
@@ -124,10 +132,11 @@ std::vector<page::PageSection> summary_sections(const std::vector<run_files::Fou
         " Of runs that revised their poses at the end: the online ones; the final ones are in the table of "
         "systems below.";
   }
-  sections.push_back({"Results", std::move(text), page_table(table)});
+  text += " A click on a heading sorts by its column.";
+  sections.push_back({"All runs", std::move(text), page_table(table), 2, true});
   std::vector<std::string> remarks = table.footer;
   remarks.insert(remarks.end(), table.notes.begin(), table.notes.end());
-  sections.push_back({"How to read the columns", "", lines_table(remarks), 3});
+  sections.push_back({"How to read the columns", "", lines_table(remarks), 3, true});
   add_systems(runs, sections);
   return sections;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -43,13 +44,15 @@ bool has(std::span<const aggregate::RunRow> rows, const registry::RunMetric& met
 }
 
 void add(std::vector<page::PageSection>& sections, std::string title, std::string text,
-         std::vector<page::Chart> charts, int level) {
-  if (!charts.empty()) sections.push_back({std::move(title), std::move(text), std::move(charts), level});
+         std::vector<page::Chart> charts, bool folded) {
+  if (!charts.empty()) sections.push_back({std::move(title), std::move(text), std::move(charts), 3, folded});
 }
 
 page::PageSection best_section(const aggregate::BestTable& table) {
   page::PageTable page;
-  page.header = {"recordings", "rank", "variant", "edited options", std::string(table.metric->heading),
+  page.sortable = true;
+  page.header = {"recordings",     "rank",           "variant",
+                 "edited options", "times the best", "mean " + std::string(table.metric->heading),
                  "runs ok"};
   for (const aggregate::BestGroup& group : table.groups) {
     for (const aggregate::BestRow& row : group.rows) {
@@ -59,35 +62,47 @@ page::PageSection best_section(const aggregate::BestTable& table) {
         options += fmt::format("{}{} = {}", options.empty() ? "" : ", ", key, value);
       page.rows.push_back(
           {{fmt::format("{}", group.recordings.size()), row.rank ? fmt::format("{}", *row.rank) : "-",
-            c.variant, options,
+            c.variant, options, c.ratio.ratio ? fmt::format("{:.2f}", *c.ratio.ratio) : "-",
             c.mean ? fmt::format("{:.{}f}", *c.mean * table.metric->shown_factor, table.metric->decimals)
                    : "-",
             fmt::format("{}/{}", c.n_ok, c.n_total)},
            c.complete() ? "" : "warning"});
     }
   }
-  return {"Best configurations",
-          "Mean over recordings; `fusebench best` has more of them, and other metrics.", std::move(page), 3};
+  std::string text;
+  for (const aggregate::BestGroup& group : table.groups) text += group.headline + " ";
+  return {"Best configurations", text + "`fusebench best` has more of them, and other metrics.",
+          std::move(page), 3};
 }
 
+/// The charts of the first metric are open, as many as fit on two screens; those of others are folded.
 void add_metric(std::vector<page::PageSection>& sections, std::span<const aggregate::RunRow> rows,
-                const registry::RunMetric& metric) {
+                const registry::RunMetric& metric, bool first) {
+  constexpr std::size_t kMostOpen = 8;
   const aggregate::SweepEffects effects =
       aggregate::sweep_effects(aggregate::with_binned_options(rows), metric);
+  std::vector<page::Chart> effects_open = effect_charts(effects);
+  std::vector<page::Chart> effects_folded;
+  if (effects_open.size() > kMostOpen) {
+    const auto rest = effects_open.begin() + kMostOpen;
+    effects_folded.assign(std::make_move_iterator(rest), std::make_move_iterator(effects_open.end()));
+    effects_open.erase(rest, effects_open.end());
+  }
   add(sections, fmt::format("What each option does to {}", metric.heading),
       "Ratio to the mean of the same recording and variant: below 1 is better. A curve is free of the other "
       "options only where each value met the same values of those. Options with many values are put together "
       "by "
       "neighbours.",
-      effect_charts(effects), 3);
+      std::move(effects_open), !first);
+  add(sections, fmt::format("Further options, {}", metric.heading), "", std::move(effects_folded), true);
   add(sections, fmt::format("Options in pairs, {}", metric.heading), "Parallel curves do not interact.",
-      interaction_charts(effects), 3);
+      interaction_charts(effects), true);
   std::vector<page::Chart> pareto;
   if (const aggregate::ParetoFront front = aggregate::pareto_front(rows, metric); !front.points.empty())
     pareto.push_back(pareto_chart(front));
   add(sections, fmt::format("{} against time", metric.heading),
       "Each dot is a configuration; nothing is both better and cheaper than those on the line.",
-      std::move(pareto), 3);
+      std::move(pareto), !first);
 }
 
 }  // namespace
@@ -109,7 +124,7 @@ std::vector<page::PageSection> sweep_sections(std::span<const aggregate::RunRow>
         const auto best = aggregate::best_configurations(runs, {*metric, "none", 10});
         if (best) parts.push_back(best_section(*best));
       }
-      add_metric(parts, runs, **metric);
+      add_metric(parts, runs, **metric, shown == 1);
     }
     if (parts.empty()) continue;
     parts.front().title = title + ": " + parts.front().title;

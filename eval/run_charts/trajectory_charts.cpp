@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "eval/run_charts/chart_parts.hpp"
 #include "eval/run_charts/run_charts.hpp"
@@ -84,7 +86,66 @@ page::Chart position_chart(std::span<const RunSeries> runs, int axis, std::size_
   return chart;
 }
 
+/// The two axes along which the poses of all runs extend most.
+std::array<int, 2> widest_axes(std::span<const RunSeries> runs) {
+  Eigen::AlignedBox3d box;
+  for (const RunSeries& run : runs) {
+    for (const ComparedPose& pose : run.poses) {
+      if (pose.T_truth_truth) box.extend(pose.T_truth_truth->translation);
+    }
+  }
+  int narrowest = 0;
+  if (box.isEmpty() || box.sizes().minCoeff(&narrowest) < 0) return {0, 1};
+  return {narrowest == 0 ? 1 : 0, narrowest == 2 ? 1 : 2};
+}
+
+/// The value of the last colour, in centimetres: the largest error of the runs, without those of a few runs
+/// that are far off.
+double largest_shown_cm(std::span<const RunSeries> runs) {
+  std::vector<double> peaks;
+  for (const RunSeries& run : runs) {
+    double peak = 0;
+    for (const ComparedPose& pose : run.poses) {
+      if (pose.T_truth_truth) peak = std::max(peak, kCentimetres * pose.error_m);
+    }
+    peaks.push_back(peak);
+  }
+  if (const auto top = top_of_most(peaks)) return *top;
+  return peaks.empty() ? 0 : *std::ranges::max_element(peaks);
+}
+
+page::Chart error_path_chart(std::span<const RunSeries> runs, const RunSeries& run, double top_cm,
+                             std::size_t buckets) {
+  const auto [across, along] = widest_axes(runs);
+  page::Chart chart = view_chart(std::span(&run, 1), across, along, buckets);
+  chart.title = fmt::format("{}-{} view by error: {}", kAxes[static_cast<std::size_t>(across)],
+                            kAxes[static_cast<std::size_t>(along)], run.label);
+  page::ChartSeries& path = chart.series.back();
+  path.points.clear();
+  const std::size_t step = run.poses.size() / std::max<std::size_t>(2 * buckets, 1) + 1;
+  for (std::size_t i = 0; i < run.poses.size(); i += step) {
+    const ComparedPose& pose = run.poses[i];
+    if (!pose.T_truth_truth) continue;
+    const Vector3d& p = pose.T_truth_camera.translation;
+    path.points.emplace_back(p[across], p[along]);
+    path.values.push_back(kCentimetres * pose.error_m);
+  }
+  chart.value_colours = {"position error [cm]", top_cm};
+  return chart;
+}
+
 }  // namespace
+
+std::vector<page::Chart> error_path_charts(std::span<const RunSeries> runs, std::size_t buckets) {
+  const double top_cm = largest_shown_cm(runs);
+  std::vector<page::Chart> charts;
+  if (!(top_cm > 0)) return charts;
+  for (const RunSeries& run : runs) {
+    page::Chart chart = error_path_chart(runs, run, top_cm, buckets);
+    if (chart.series.back().points.size() > 1) add(charts, std::move(chart));
+  }
+  return charts;
+}
 
 std::vector<page::Chart> view_charts(std::span<const RunSeries> runs, std::size_t buckets) {
   std::vector<page::Chart> charts;

@@ -19,7 +19,7 @@ inline constexpr double kSpeedBin_degps = 50;
 struct SpeedBin {
   std::size_t frames = 0;
   std::size_t lost = 0;    ///< without a pose
-  std::size_t silent = 0;  ///< with a pose that is a silent failure
+  std::size_t silent = 0;  ///< with a pose that is an undetected failure
 
   SpeedBin& operator+=(const SpeedBin& other);
 };

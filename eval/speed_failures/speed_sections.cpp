@@ -20,7 +20,7 @@ std::string range_text(std::size_t bin) {
 
 std::string cell_text(const SpeedBin& bin) {
   if (bin.frames == 0) return "-";
-  return fmt::format("{:.0f} % of {} ({} lost, {} silent)",
+  return fmt::format("{:.0f} % of {} ({} lost, {} undetected)",
                      100.0 * static_cast<double>(bin.lost + bin.silent) / static_cast<double>(bin.frames),
                      bin.frames, bin.lost, bin.silent);
 }
@@ -45,7 +45,7 @@ std::vector<page::PageSection> FailureSections::sections() const {
   }
   if (most <= kFastBin || failed == 0) return {};
   page::Chart chart;
-  chart.title = "Frames that are lost or silently wrong";
+  chart.title = "Frames that are lost or undetected failures";
   chart.x_label = "angular speed of the camera [deg/s]";
   chart.left_label = "share of the frames [%]";
   page::PageTable table;
@@ -69,7 +69,8 @@ std::vector<page::PageSection> FailureSections::sections() const {
   const std::string text =
       "Frames of all recordings that are drawn below, by the fastest turn of the true camera in the second "
       "before. Lost: without "
-      "a pose; silent: with one whose motion over that second is off by more than 5 cm or 3 degrees. Bins of "
+      "a pose; undetected: with one whose motion over that second is off by more than 5 cm or 3 degrees. "
+      "Bins of "
       "few "
       "frames say little.";
   std::vector<page::Chart> charts{std::move(chart)};

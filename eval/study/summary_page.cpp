@@ -23,10 +23,19 @@ page::PageTable page_table(const SummaryTable& table) {
   return page;
 }
 
-/// "1.20 / 1.18 / 1.90" one below the other: a dozen of such columns are wider than a page.
+/// "1.20 / 1.18 / 1.90" one below the other, since a dozen of such columns are wider than a page; a column
+/// says which line is the mean, the median and the worst.
 page::PageTable stacked_table(const SummaryTable& table) {
+  constexpr std::ptrdiff_t kNames = 2;  // group and variant
   page::PageTable page = page_table(table);
+  const bool stacked = std::ranges::any_of(page.rows, [](const page::PageTable::Row& row) {
+    return std::ranges::any_of(row.cells,
+                               [](const std::string& cell) { return cell.find(" / ") != std::string::npos; });
+  });
+  if (!stacked) return page;
+  page.header.insert(page.header.begin() + kNames, "over recordings");
   for (page::PageTable::Row& row : page.rows) {
+    row.cells.insert(row.cells.begin() + kNames, "mean\nmedian\nworst");
     for (std::string& cell : row.cells) {
       for (auto at = cell.find(" / "); at != std::string::npos; at = cell.find(" / "))
         cell.replace(at, 3, "\n");
@@ -132,11 +141,27 @@ std::vector<page::Chart> value_charts(const StudySummary& summary, const Study& 
   return charts;
 }
 
+/// "Study demo: FAIL, 2 of 14 criteria failed".
+std::string title_of(const StudySummary& summary) {
+  if (summary.criteria.empty()) return fmt::format("Study {}", summary.suite);
+  const auto count = [&](Verdict verdict) {
+    return std::ranges::count_if(
+        summary.criteria, [&](const CriterionResult& result) { return result.decided.verdict == verdict; });
+  };
+  const auto undecided = count(Verdict::not_applicable);
+  const std::string rest = undecided > 0 ? fmt::format(", {} not decided", undecided) : "";
+  if (const auto failed = count(Verdict::failed); failed > 0)
+    return fmt::format("Study {}: FAIL, {} of {} criteria failed{}", summary.suite, failed,
+                       summary.criteria.size(), rest);
+  return fmt::format("Study {}: PASS, {} of {} criteria passed{}", summary.suite,
+                     count(Verdict::passed) + count(Verdict::tied), summary.criteria.size(), rest);
+}
+
 }  // namespace
 
 std::string summary_page(const StudySummary& summary, const Study& study) {
   page::Page page;
-  page.title = fmt::format("Study: {}", summary.suite);
+  page.title = title_of(summary);
   std::size_t ok = 0;
   for (const StudyRun& run : study.runs) ok += run.record.status == record::RunStatus::ok ? 1 : 0;
   page.subtitle = fmt::format(
@@ -145,7 +170,9 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
   if (!summary.criteria.empty()) {
     page.subtitle += " " + criteria_verdict(summary.criteria);
     SummaryTable criteria = criteria_table(summary.criteria);
-    page.sections.push_back({criteria.title, "", page_table(criteria)});
+    page::PageTable table = page_table(criteria);
+    table.sortable = true;
+    page.sections.push_back({criteria.title, "", std::move(table)});
   }
   std::vector<page::Chart> motion;
   for (const MotionCurve& curve : summary.curves) {
@@ -162,7 +189,7 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
   if (!summary.notes.empty()) {
     page::PageTable notes;
     for (const std::string& note : summary.notes) notes.rows.push_back({{note}, ""});
-    page.sections.push_back({"Remarks", "", std::move(notes)});
+    page.sections.push_back({"Remarks", "", std::move(notes), 2, true});
   }
   return page::to_html(page);
 }

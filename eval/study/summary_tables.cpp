@@ -13,6 +13,14 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
+/// The unit of what a criterion measures, with a space before it; none of ratios, shares and counts.
+std::string unit_of(const suites::Criterion& criterion) {
+  if (criterion.statistic == suites::CriterionStatistic::share) return "";
+  if (!criterion.against.empty() && criterion.compare == suites::CriterionComparison::ratio) return "";
+  const std::string_view unit = registry::run_metric(criterion.metric).unit;
+  return unit == "1" ? "" : fmt::format(" {}", unit);
+}
+
 /// "1.20 / 1.18 / 1.90": mean, median, worst.
 std::string spread_cell(const ValueSpread& spread, const registry::RunMetric& metric) {
   if (spread.count == 0) return "-";
@@ -22,9 +30,11 @@ std::string spread_cell(const ValueSpread& spread, const registry::RunMetric& me
 
 std::string nees_cell(const ValueSpread& spread) {
   if (spread.count == 0 || !spread.bounds_95) return "-";
-  const bool within = spread.mean >= spread.bounds_95->lower && spread.mean <= spread.bounds_95->upper;
-  return fmt::format("{:.2f}{} ({:.2f} .. {:.2f})", spread.mean, within ? "" : " !", spread.bounds_95->lower,
-                     spread.bounds_95->upper);
+  const char* verdict = spread.mean > spread.bounds_95->upper   ? " overconfident"
+                        : spread.mean < spread.bounds_95->lower ? " underconfident"
+                                                                : "";
+  return fmt::format("{:.2f} ({:.2f} .. {:.2f}){}", spread.mean, spread.bounds_95->lower,
+                     spread.bounds_95->upper, verdict);
 }
 
 std::string common_cell(const ValueSpread& spread) {
@@ -75,7 +85,10 @@ SummaryTable value_table(std::string_view split, const std::vector<const Summary
 
 SummaryTable nees_table(std::string_view split, const std::vector<const SummaryRow*>& rows) {
   SummaryTable table{
-      fmt::format("NEES / dof, {} split: mean over runs (95 % bounds of that mean); ! is outside", split),
+      fmt::format(
+          "NEES / dof, {} split: mean over runs (95 % bounds of that mean). Overconfident: errors are "
+          "larger than the covariance claims; underconfident: smaller",
+          split),
       {"group", "variant"},
       {}};
   const auto metrics = registry::columns_of(registry::Column::study);
@@ -95,8 +108,20 @@ SummaryTable nees_table(std::string_view split, const std::vector<const SummaryR
   return table;
 }
 
-std::string number_cell(const std::optional<double>& value) {
-  return value ? fmt::format("{:.4g}", *value) : "-";
+/// "PASS"; of what no run has a number of: "not decided".
+std::string verdict_cell(Verdict verdict) {
+  return verdict == Verdict::not_applicable ? "not decided" : std::string(to_string(verdict));
+}
+
+std::string number_cell(const std::optional<double>& value, const std::string& unit) {
+  return value ? fmt::format("{:.4g}{}", *value, unit) : "-";
+}
+
+/// "tuning: 0.012 (PASS, 4 recordings)"; blank where that split has no number.
+std::string beside_cell(const CriterionMeasurement& beside, const std::string& unit) {
+  if (beside.verdict == Verdict::not_applicable) return "";
+  return fmt::format("{}: {} ({}, {} recording{})", beside.split, number_cell(beside.measured, unit),
+                     to_string(beside.verdict), beside.recordings, beside.recordings == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -108,14 +133,14 @@ SummaryTable criteria_table(const std::vector<CriterionResult>& criteria) {
       {}};
   for (const CriterionResult& result : criteria) {
     std::string groups;
+    const std::string unit = unit_of(result.criterion);
     for (const std::string& group : result.criterion.groups) groups += (groups.empty() ? "" : " ") + group;
-    table.rows.push_back(
-        {std::string(to_string(result.decided.verdict)), result.criterion.title,
-         groups.empty() ? std::string(kAllGroups) : groups, number_cell(result.decided.measured),
-         result.decided.limit, fmt::format("{}", result.decided.recordings),
-         fmt::format("{}: {} ({} of {})", result.beside.split, number_cell(result.beside.measured),
-                     to_string(result.beside.verdict), result.beside.recordings),
-         result.decided.note});
+    table.rows.push_back({verdict_cell(result.decided.verdict), result.criterion.title,
+                          groups.empty() ? std::string(kAllGroups) : groups,
+                          number_cell(result.decided.measured, unit),
+                          result.decided.limit.empty() ? "" : result.decided.limit + unit,
+                          fmt::format("{}", result.decided.recordings), beside_cell(result.beside, unit),
+                          result.decided.note});
   }
   return table;
 }

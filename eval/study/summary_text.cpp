@@ -35,7 +35,7 @@ std::string criteria_verdict(const std::vector<CriterionResult>& criteria) {
                          [&](const CriterionResult& result) { return result.decided.verdict == verdict; });
   };
   return fmt::format(
-      "{} of {} criteria passed ({} by less than their noise: a tie), {} failed, {} not applicable.",
+      "{} of {} criteria passed ({} by less than their noise: a tie), {} failed, {} not decided.",
       count(Verdict::passed) + count(Verdict::tied), criteria.size(), count(Verdict::tied),
       count(Verdict::failed), count(Verdict::not_applicable));
 }

@@ -12,8 +12,9 @@ namespace fusebench::tables {
 
 /// Where a table stands in a paper.
 struct LatexLayout {
-  int columns = 2;       ///< of a two-column paper that it may cover: 1 or 2
-  bool rotated = false;  ///< by a quarter turn, on a page of its own
+  int columns = 2;                        ///< of a two-column paper that it may cover: 1 or 2
+  bool rotated = false;                   ///< by a quarter turn, on a page of its own
+  std::vector<std::string> metrics = {};  ///< keys of the numbers of a table of runs; empty: all
 };
 
 struct LatexTable {

@@ -275,7 +275,8 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
       "tracked. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true "
       "surface; a "
-      "run has one, at its final poses where it has these. Silent: frames with a wrong pose. CPU: user and "
+      "run has one, at its final poses where it has these. Undetected: frames with a wrong pose. CPU: user "
+      "and "
       "system time of all threads by the frames of the recording; of an external program everything it "
       "does."};
   return table;

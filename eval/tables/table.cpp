@@ -180,13 +180,14 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "ATE: rmse of positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM). Only "
       "tracked frames "
       "have a pose, so read it with the column tracked.",
-      "ATE fitted: the same after the offset between the camera and the body that the truth is of was fitted "
-      "as "
-      "well (markers of a motion capture); - where the motion does not tell it.",
+      "ATE fitted: the same after the offset between the camera and the motion-capture body was fitted as "
+      "well; "
+      "- where the motion does not make it observable.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
   if (std::ranges::any_of(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; })) {
     footer.push_back(
-        "silent: frames with a pose whose motion over the second before is off by more than 5 cm or 3 "
+        "undetected: undetected failures, frames with a pose whose motion over the second before is off by "
+        "more than 5 cm or 3 "
         "degrees "
         "(evaluation.silent_*), which the method does not report; a jump, as where a lost tracker finds "
         "itself, counts for that second.");
@@ -201,9 +202,8 @@ std::vector<std::string> footer_of(const ResultTable& table) {
   }
   if (!table.means.empty()) {
     footer.push_back(
-        "mean: arithmetic, of the variant's runs that are ok, whose number stands before that of all; over "
-        "data of one "
-        "kind. "
+        "mean: arithmetic, over the variant's runs that are ok on data of one kind; n/N ok: n of N runs are "
+        "ok. "
         "Means over different recordings, or over other frames of them, do not compare.");
   }
   std::vector<record::DataWords> words;

@@ -29,7 +29,7 @@ struct TableRow : run_files::RunIdentity {
   record::RunStatus status =
       record::RunStatus::failed;  ///< of the first replicate that is not ok, if there is one
   std::string reason;
-  std::optional<std::size_t> silent;  ///< silent failures; absent without truth
+  std::optional<std::size_t> silent;  ///< undetected failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
 };
@@ -44,7 +44,7 @@ struct TableMean {
   std::size_t recordings = 0;  ///< different ones
   std::size_t ok = 0;
   std::size_t total = 0;
-  std::size_t silent = 0;  ///< runs with silent failures among the ok ones
+  std::size_t silent = 0;  ///< runs with undetected failures among the ok ones
   registry::RunNumbers
       values;               ///< of columns, each over all ok runs; absent where one of them does not have it
   std::size_t windows = 0;  ///< different stretches of frames of these recordings, together
@@ -76,6 +76,9 @@ struct ResultTable {
 /// The places of the cells in which a run is the best of its recording's ok runs over the same frames, if
 /// there are others; all that are shown as the best one is are best.
 [[nodiscard]] std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row);
+
+/// Error usage: a key that is no column of the table of runs, with those that are.
+[[nodiscard]] Result<void> check_latex_metrics(const std::vector<std::string>& keys);
 
 enum class TableFormat { markdown, csv, csv_long, json, latex };
 /// Error usage.

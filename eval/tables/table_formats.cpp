@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "eval/record/data_labels.hpp"
@@ -47,7 +49,7 @@ void add_values(const registry::RunNumbers& values, Cells& cells) {
   for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, values[*column]));
 }
 
-/// "ok", "ok (12 silent)", and of replicates how many are: "4/5 ok (12 silent)".
+/// "ok", "ok (12 undetected)", and of replicates how many are: "4/5 ok (12 undetected)".
 std::string status_cell(const TableRow& row) {
   if (row.members.size() < 2) return record::status_text(row.status, row.silent);
   return fmt::format("{}/{} {}", row.ok_members, row.members.size(),
@@ -73,8 +75,8 @@ std::string mean_over(const TableMean& mean) {
 
 Cells shown_cells(const TableMean& mean, bool with_replicates) {
   Cells cells = {mean_over(mean), record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
-                 mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} silent)", mean.ok, mean.total, mean.silent,
-                                               mean.silent == 1 ? "" : "s")
+                 mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} with undetected failures)", mean.ok,
+                                               mean.total, mean.silent, mean.silent == 1 ? "" : "s")
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
   cells.insert(cells.end(), with_replicates ? 4 : 3, "");
@@ -87,7 +89,7 @@ std::string count_line(const ResultTable& table) {
   const auto silent =
       std::ranges::count_if(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; });
   return fmt::format("{} of {} runs ok{}.", ok, table.rows.size(),
-                     silent > 0 ? fmt::format(", {} with silent failures", silent) : "");
+                     silent > 0 ? fmt::format(", {} with undetected failures", silent) : "");
 }
 
 std::string markdown(const ResultTable& table, std::size_t width) {
@@ -97,6 +99,40 @@ std::string markdown(const ResultTable& table, std::size_t width) {
   text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
   return text;
+}
+
+/// Keys of the columns of numbers, in their order.
+std::vector<std::string> column_keys() {
+  std::vector<std::string> keys;
+  for (const registry::RunMetric* column : columns()) keys.emplace_back(column->key);
+  keys.insert(keys.end(), {"frames_tracked", "model_vertices", "fps"});
+  return keys;
+}
+
+/// Keeps the names and the columns of those numbers.
+void keep_columns(const std::vector<std::string>& metrics, LatexTable& table) {
+  const std::vector<std::string> keys = column_keys();
+  std::vector<std::size_t> kept;
+  for (std::size_t column = 0; column < table.heading.size(); ++column) {
+    const bool is_name = column < table.text_columns;
+    const std::size_t place = is_name ? 0 : column - table.text_columns;
+    if (is_name || (place < keys.size() && std::ranges::find(metrics, keys[place]) != metrics.end()))
+      kept.push_back(column);
+  }
+  const auto chosen = [&](const Cells& cells) {
+    Cells result;
+    for (const std::size_t column : kept) result.push_back(cells[column]);
+    return result;
+  };
+  table.heading = chosen(table.heading);
+  for (LatexTable::Line& line : table.lines) {
+    std::vector<std::size_t> bold;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      if (std::ranges::find(line.bold, kept[i]) != line.bold.end()) bold.push_back(i);
+    }
+    line.cells = chosen(line.cells);
+    line.bold = std::move(bold);
+  }
 }
 
 std::string latex(const ResultTable& table, const LatexLayout& layout) {
@@ -114,6 +150,7 @@ std::string latex(const ResultTable& table, const LatexLayout& layout) {
   }
   for (std::size_t i = 0; i < table.means.size(); ++i)
     latex.lines.push_back({shown_cells(table.means[i], replicates), {}, i == 0});
+  if (!layout.metrics.empty()) keep_columns(layout.metrics, latex);
   latex.footnotes = {count_line(table)};
   latex.footnotes.insert(latex.footnotes.end(), table.notes.begin(), table.notes.end());
   latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
@@ -266,6 +303,17 @@ std::vector<Cells> table_cells(const ResultTable& table) {
   for (const TableRow& row : table.rows) lines.push_back(shown_cells(row, replicates));
   for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean, replicates));
   return lines;
+}
+
+Result<void> check_latex_metrics(const std::vector<std::string>& keys) {
+  const std::vector<std::string> known = column_keys();
+  for (const std::string& key : keys) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    return fail(ErrorCode::usage,
+                fmt::format("--metrics {}: the table of runs has no such column (allowed: {})", key,
+                            fmt::join(known, " | ")));
+  }
+  return {};
 }
 
 Result<TableFormat> parse_table_format(std::string_view text) {

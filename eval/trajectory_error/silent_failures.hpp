@@ -1,4 +1,4 @@
-// Silent failures: poses that an estimator claims and that are wrong (docs/metrics.md).
+// Undetected failures: poses that an estimator claims and that are wrong (docs/metrics.md).
 #pragma once
 
 #include <cstddef>

@@ -703,7 +703,7 @@ check_evaluation() {
   swing 0.066 30 >late.txt
   prints 'reference clock: t_reference = t_estimate \+ 0.066[0-9]+ s, standard deviation 0.000' "the reference's clock" \
     eval ate swing.txt late.txt -a --t_max_diff 0.02 --fit-time-offset
-  prints 'silent failures +[0-9]+ +0$' "silent failures without an offset" eval ape swing.txt late.txt --t_max_diff 0.02 --fit_time_offset
+  prints 'undetected failures +[0-9]+ +0$' "silent failures without an offset" eval ape swing.txt late.txt --t_max_diff 0.02 --fit_time_offset
   prints 'trans_part_clock_fitted \[mm\]' "errors with the fitted clock" \
     eval ape swing.txt late.txt -a --t_max_diff 0.02 --fit-time-offset --change_unit mm
   prints 'angle_deg_clock_fitted \[deg\]' "relative errors with the fitted clock" eval rpe swing.txt late.txt --protocol tum --fit-time-offset

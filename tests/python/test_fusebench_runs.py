@@ -71,6 +71,16 @@ class AWrittenRun(unittest.TestCase):
         self.assertEqual(table["label"], [self.run_of_test.label])
         self.assertIn("no-imu patches.size_px=12", str(table))
 
+    def test_the_summary_has_a_column_for_each_option_that_any_run_edited(self):
+        with tempfile.TemporaryDirectory() as folder:
+            record = json.loads(json.dumps(self.run_of_test.record))
+            del record["config"]["patches.size_px"]
+            (pathlib.Path(folder) / "record.json").write_text(json.dumps(record), encoding="utf-8")
+            table = fusebench_runs.summary([self.run_of_test, fusebench_runs.Run(folder)], frames=False)
+            self.assertEqual(table["patches.size_px"], [12, None])
+            self.assertEqual(table["variant"], ["no-imu", "no-imu"])
+            self.assertEqual(sum(key.startswith("patches.") for key in table), 1)
+
     def test_the_page_of_files_knows_every_file_and_column(self):
         page = (ROOT / "docs" / "files.md").read_text(encoding="utf-8")
         for file in self.run_of_test.folder.iterdir():

@@ -78,7 +78,7 @@ def unfold(reader):
     driver = reader.driver
     for details in driver.find_elements(By.CSS_SELECTOR, "details"):
         details.find_element(By.CSS_SELECTOR, "summary").click()
-        if details.get_attribute("open") is None or not details.find_elements(By.CSS_SELECTOR, "tr"):
+        if details.get_attribute("open") is None or not details.find_elements(By.CSS_SELECTOR, "tr, canvas, .scene"):
             reader.complain("folded away is nothing: " + details.text)
 
 

@@ -1,4 +1,4 @@
-"""Meshes have pictures that turn, and are seen with the way of the camera at first."""
+"""Meshes have pictures that turn, and are seen with the camera path at first."""
 from selenium.webdriver.common.by import By
 
 # A view that shows a mesh has more than one colour.
@@ -43,7 +43,7 @@ def turn_meshes(reader):
     scenes = driver.find_elements(By.CSS_SELECTOR, ".scene")
     for index, scene in enumerate(scenes):
         if driver.execute_script(PATH_OUT_OF_SIGHT, index):
-            reader.complain(f"the first view of model {index} cuts the way of the camera")
+            reader.complain(f"the first view of model {index} cuts the camera path")
         reader.show(scene)
         if not reader.wait(PAINTED, scene):
             reader.complain("a scene shows no mesh: " + scene.text)

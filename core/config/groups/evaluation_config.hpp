@@ -12,7 +12,7 @@ constexpr auto option_choices(ReferenceTimeOffset) {
       {{"none", ReferenceTimeOffset::none}, {"fitted", ReferenceTimeOffset::fitted}});
 }
 
-/// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures), and which intensity
+/// When a pose that the estimator claims is wrong (docs/metrics.md, undetected failures), and which intensity
 /// errors are recorded; and when a run that went to its end has nothing to say.
 struct EvaluationConfig {
   double silent_interval_s = 1.0;
@@ -27,7 +27,7 @@ struct EvaluationConfig {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
              "a claimed pose is judged by the motion since the one this long before (seconds)");
     v.number("silent_translation_m", self.silent_translation_m, 1e-4, 100.0,
-             "it is a silent failure if that motion is off by more than this");
+             "it is an undetected failure if that motion is off by more than this");
     v.number("silent_rotation_deg", self.silent_rotation_deg, 0.01, 180.0,
              "or if it is rotated by more than this");
     v.flag("intensity_readings", self.intensity_readings,
@@ -38,11 +38,11 @@ struct EvaluationConfig {
     v.number("min_tracked_share", self.min_tracked_share, 0.0, 1.0,
              "a run that tracks a smaller share of its frames is lost, also where iekf.max_lost_frames never "
              "ended it");
-    v.choice(
-        "reference_time_offset", self.reference_time_offset,
-        "whether ATE, RPE and silent failures are computed with the ground truth's stamps as they are, or "
-        "shifted by the fitted offset of its clock, where the motion makes it observable "
-        "(docs/metrics.md, reference clock); records hold both");
+    v.choice("reference_time_offset", self.reference_time_offset,
+             "whether ATE, RPE and undetected failures are computed with the ground truth's stamps as they "
+             "are, or "
+             "shifted by the fitted offset of its clock, where the motion makes it observable "
+             "(docs/metrics.md, reference clock); records hold both");
   }
 };
 

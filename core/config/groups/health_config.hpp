@@ -43,12 +43,13 @@ struct HealthConfig {
         "min_correlation", self.min_correlation, -1.0, 1.0,
         "an update is not believed if the median correlation of the tracked patches is below this: 0 to 0.25 "
         "on wrong places, at least 0.34 under the worst blur of simulated motion at 10 rad/s");
-    v.number("max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
-             "an update is not believed if the orientation against the model is less certain along some axis "
-             "(degrees, one sigma): what follows would be fused apart from what is there; three sigmas are a "
-             "silent failure (evaluation.silent_rotation_deg)");
+    v.number(
+        "max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
+        "an update is not believed if the orientation against the model is less certain along some axis "
+        "(degrees, one sigma): what follows would be fused apart from what is there; three sigmas are an "
+        "undetected failure (evaluation.silent_rotation_deg)");
     v.number("max_position_sigma_m", self.max_position_sigma_m, 1e-4, 100.0,
-             "the same for the position (metres); 2.5 sigmas are a silent failure "
+             "the same for the position (metres); 2.5 sigmas are an undetected failure "
              "(evaluation.silent_translation_m)");
     v.number(
         "max_occluded_frames", self.max_occluded_frames, 0, 100000,

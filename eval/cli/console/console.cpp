@@ -101,7 +101,7 @@ std::string summary_line(const record::RunRecord& record) {
   // Nobody timed what was imported.
   if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
-    line += fmt::format(", {} silent failures", silent);
+    line += fmt::format(", {} undetected failures", silent);
   return line;
 }
 

@@ -34,7 +34,8 @@ struct SilentOptions {
 
 std::string to_text(const trajectory_error::SilentFailures& found) {
   std::string text = fmt::format(
-      "silent failures: {} of {} poses, whose motion over {:g} s is off by more than {:g} m or {:g} deg\n",
+      "undetected failures: {} of {} poses, whose motion over {:g} s is off by more than {:g} m or {:g} "
+      "deg\n",
       found.silent, found.judged, found.limits.interval_s, found.limits.max_translation_m,
       degrees(found.limits.max_rotation_rad));
   if (found.first_ns)
@@ -62,7 +63,7 @@ Result<int> run(const SilentOptions& options) {
   const auto sides = trajectories::load_sides(options.reference, options.estimate);
   if (!sides) return tl::unexpected(sides.error());
   if (!sides->have_stamps())
-    return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",
+    return fail(ErrorCode::usage, "undetected failures need stamps, which the format kitti does not have",
                 "use TUM or EuRoC files");
   const auto found = trajectory_error::silent_failures(
       trajectory::of_point(sides->reference.poses, Vector3d(options.offset_m.data())),
@@ -78,7 +79,8 @@ Result<int> run(const SilentOptions& options) {
 console::Verb add_eval_silent_verb(CLI::App& eval) {
   auto options = std::make_shared<SilentOptions>();
   CLI::App* verb = eval.add_subcommand(
-      "silent", "Counts the poses that an estimate claims although the motion before them is wrong");
+      "silent",
+      "Counts undetected failures: poses of an estimate whose motion over the second before is wrong");
   verb->add_option("GT", options->reference, "Reference with stamps (TUM, EuRoC)")->required();
   verb->add_option("EST", options->estimate, "Estimate with stamps; frames that were lost have no pose in it")
       ->required();

@@ -4,12 +4,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/tables/paper_table.hpp"
+#include "eval/tables/pivot_table.hpp"
 #include "eval/tables/systems_table.hpp"
 #include "eval/tables/table.hpp"
 
@@ -20,6 +23,7 @@ namespace {
 struct TableOptions {
   std::filesystem::path runs;
   std::string paper;
+  std::string pivot;
   bool systems = false;
   std::string format = "markdown";
   tables::LatexLayout layout;
@@ -27,6 +31,16 @@ struct TableOptions {
   std::optional<std::size_t> width;
   const CLI::Option* named_format = nullptr;
 };
+
+Result<int> pivot(const std::vector<run_files::FoundRun>& runs, const TableOptions& options,
+                  tables::TableFormat format, std::size_t width) {
+  const auto metric = registry::find_ranking_metric(options.pivot);
+  if (!metric) return tl::unexpected(metric.error());
+  const auto text = tables::render_pivot(tables::table_of(runs), **metric, format, options.layout, width);
+  if (!text) return tl::unexpected(text.error());
+  console::print_output(*text);
+  return 0;
+}
 
 Result<int> table(const TableOptions& options) {
   const auto format = tables::parse_table_format(options.json ? "json" : options.format);
@@ -41,6 +55,11 @@ Result<int> table(const TableOptions& options) {
   }
   if (options.paper.empty()) {
     if (!runs) return tl::unexpected(runs.error());
+    if (!options.pivot.empty()) return pivot(*runs, options, *format, width);
+    if (!options.layout.metrics.empty() && *format != tables::TableFormat::latex)
+      return fail(ErrorCode::usage, "--metrics requires --format latex");
+    if (auto known = tables::check_latex_metrics(options.layout.metrics); !known)
+      return tl::unexpected(known.error());
     console::print_output(tables::render_table(tables::table_of(*runs), *format, options.layout, width));
     return 0;
   }
@@ -71,6 +90,20 @@ console::Verb add_table_verb(CLI::App& app) {
           "A row a recording and system: medians and ranges over repetitions, with lost frames, CPU and "
           "memory, and published numbers below")
       ->excludes("--paper");
+  verb->add_option(
+          "--pivot", options->pivot,
+          "One number, a line a recording and a column a method: ate, rpe, aie, mesh, cpu, ..., or the "
+          "name of a metric that ranks")
+      ->type_name("METRIC")
+      ->excludes("--paper")
+      ->excludes("--systems");
+  verb->add_option("--metrics", options->layout.metrics,
+                   "LaTeX, table of runs: the numbers that it has, by their keys (`fusebench list metrics`)")
+      ->type_name("KEY,...")
+      ->delimiter(',')
+      ->excludes("--paper")
+      ->excludes("--systems")
+      ->excludes("--pivot");
   verb->add_option(
           "--columns", options->layout.columns,
           "LaTeX: how many columns of a two-column paper the table covers, 1 or 2; it is split where it "

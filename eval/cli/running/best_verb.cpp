@@ -54,9 +54,9 @@ console::Verb add_best_verb(CLI::App& app) {
                    "ate, rpe, aie, mesh, cpu, wall, memory, or the name of a metric in `fusebench collect`")
       ->capture_default_str();
   verb->add_option("--group", options->request.group,
-                   "A ranking for each recording, each variant, each value of an option that runs edit, or "
-                   "none: one of all")
-      ->type_name("recording|variant|none|KEY")
+                   "none: one ranking over all recordings; or one for each recording, each variant, or each "
+                   "value of an option that runs edit")
+      ->type_name("none|recording|variant|KEY")
       ->capture_default_str();
   verb->add_option("-n", options->request.most, "Configurations shown of each group; 0: all")
       ->type_name("N")

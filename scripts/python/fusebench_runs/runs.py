@@ -167,10 +167,14 @@ def open_runs(folder):
 
 
 def summary(runs, frames=None):
-    """A row per run with the numbers that are columns of tables, by their keys (`fusebench list metrics`)."""
+    """A row per run: the variant, each option that any of the runs edited (its value in every run that has it, as in record.json; None in
+    others) by its key, and the numbers that are columns of tables, by their keys (`fusebench list metrics`)."""
+    options = sorted({key for run in runs for key in run.edits})
     columns = {
         "recording": [run.recording for run in runs],
         "label": [run.label for run in runs],
+        "variant": [run.variant for run in runs],
+        **{key: [run.record["config"].get(key, {}).get("value") for run in runs] for key in options},
         "status": [run.status for run in runs],
         "reason": [run.reason for run in runs],
         **{key: [run.number(key) for run in runs] for key, metric in METRICS.items() if metric["tables"]},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/eval/aggregate/sample_rows.hpp"
@@ -47,6 +48,48 @@ TEST(Best, RanksByTheMeanOverRecordingsAndPutsIncompleteOnesLast) {
   EXPECT_EQ(rows[2].configuration.n_ok, 1U);
   EXPECT_EQ(rows[2].configuration.n_total, 2U);
   EXPECT_EQ(incomplete_note(rows[2].configuration), "failed or lost: room");
+}
+
+TEST(Best, TheHeadlineHasTheMeanOfTheTable) {
+  const BestTable table = best(three_levels(), BestRequest().group);
+  const BestGroup& group = table.groups.at(0);
+  EXPECT_EQ(group.label, "all") << "by default over all recordings";
+  // desk: 2 times that of level 3, which has the smallest; room: its own is the smallest.
+  EXPECT_NEAR(*group.rows[0].configuration.ratio.ratio, std::sqrt(2.0), 1e-12);
+  EXPECT_TRUE(
+      group.headline.starts_with("all (recorded, 2 recordings): full levels=2 is best by ate_rmse_m: 1.41 "
+                                 "times the best of each recording (95 % "))
+      << group.headline;
+  EXPECT_EQ(group.headline.find("Tied"), std::string::npos) << group.headline;
+  const std::string markdown = render_best(table, BestFormat::markdown);
+  EXPECT_TRUE(markdown.starts_with(group.headline)) << markdown;
+  EXPECT_NE(markdown.find("| 1.41 |"), std::string::npos) << markdown;
+}
+
+TEST(Best, ConfigurationsThatChanceMayHaveSwappedAreNamedAsTied) {
+  std::vector<RunRow> rows;
+  const double ratios[] = {1.1, 0.9, 1.05, 0.97};
+  for (int i = 0; i < 4; ++i) {
+    const std::string name(1, static_cast<char>('a' + i));
+    rows.push_back(sample_row(name, {{"levels", "1"}}, 0.01));
+    rows.push_back(sample_row(name, {{"levels", "2"}}, 0.01 * ratios[i]));
+    rows.push_back(sample_row(name, {{"levels", "3"}}, 0.02));
+  }
+  const BestGroup group = best(rows, "none").groups.at(0);
+  EXPECT_EQ(group.rows[0].rank, 1U);
+  EXPECT_EQ(group.rows[1].rank, 1U);
+  EXPECT_EQ(group.rows[2].rank, 3U);
+  EXPECT_NE(group.headline.find("Tied with it: full levels="), std::string::npos) << group.headline;
+  EXPECT_EQ(group.headline.find("levels=3"), std::string::npos) << group.headline;
+}
+
+TEST(Best, ACountOfZeroHasNoRatioAndIsRankedByTheMean) {
+  std::vector<RunRow> rows = three_levels();
+  rows[2].numbers.set(registry::run_metric("ate_rmse_m"), 0.0);
+  const BestGroup group = best(rows, "none").groups.at(0);
+  EXPECT_EQ(group.rows[0].configuration.options[0].second, "2");
+  EXPECT_FALSE(group.rows[0].configuration.ratio.ratio);
+  EXPECT_NE(group.headline.find("no ratios"), std::string::npos) << group.headline;
 }
 
 TEST(Best, GroupsByRecordingVariantAndOption) {
@@ -155,7 +198,7 @@ TEST(Best, DoesNotDependOnTheOrderOfRuns) {
 TEST(Best, FormatsCarryTheSameNumbers) {
   const BestTable table = best(three_levels(), "none", 2);
   const std::string csv = render_best(table, BestFormat::csv);
-  EXPECT_NE(csv.find("all,recorded,2,full,none,1,ate_rmse_m,m,0.04,0.04,0.04,2,2,2,\n"), std::string::npos)
+  EXPECT_NE(csv.find("all,recorded,2,full,none,1,ate_rmse_m,m,0.04,0.04,0.04,2,2,2,,2.19"), std::string::npos)
       << csv;
   const auto document = nlohmann::json::parse(render_best(table, BestFormat::json));
   EXPECT_EQ(document.at("groups").at(0).at("rows").at(1).at("mean"), 0.04);

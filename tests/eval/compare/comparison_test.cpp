@@ -270,8 +270,10 @@ TEST_F(ComparisonTest, DivergencesAreNamedTheEarliestFirst) {
   EXPECT_EQ(comparison.identical(), 1U);
   const auto diverging = comparison.diverging();
   ASSERT_EQ(diverging.size(), 2U);
-  EXPECT_EQ(diverging[0]->divergence->text(), "diverges at frame 12 (stamp 12.000000000): moved by 1 mm");
-  EXPECT_EQ(diverging[1]->divergence->text(), "diverges at frame 105 (stamp 5.000000000): moved by 0.2 mm");
+  EXPECT_EQ(diverging[0]->divergence->text(),
+            "trajectory differs from frame 12 on (stamp 12.000000000): moved by 1 mm");
+  EXPECT_EQ(diverging[1]->divergence->text(),
+            "trajectory differs from frame 105 on (stamp 5.000000000): moved by 0.2 mm");
   Gates gates;
   gates.divergence_fails = true;
   EXPECT_EQ(compare(gates).failures(), 2U);
@@ -284,7 +286,7 @@ TEST_F(ComparisonTest, AFrameTrackedOnOneSideIsADivergence) {
   tum.erase(row, tum.find('\n', row) + 1 - row);
   add("new", good_record(), tum);
   EXPECT_EQ(compare().runs[0].divergence->text(),
-            "diverges at frame 7 (stamp 7.000000000): only BASE tracked it");
+            "trajectory differs from frame 7 on (stamp 7.000000000): only BASE tracked it");
 }
 
 TEST_F(ComparisonTest, ADamagedTrajectoryIsARegression) {
@@ -437,6 +439,9 @@ TEST_F(ComparisonTest, SlowerRunsAreSuspectUntilARerunDecides) {
   EXPECT_NE(gate(comparison, "cpu_ms_per_frame")->message.find("--confirm"), std::string::npos);
   EXPECT_EQ(gate(comparison, "wall_s")->verdict, GateVerdict::suspect);
   EXPECT_EQ(gate(comparison, "peak_rss_bytes"), nullptr);
+  const std::string text = render_comparison(comparison, ComparisonFormat::table);
+  EXPECT_NE(text.find("2 possible slowdowns in "), std::string::npos) << text;
+  EXPECT_NE(text.find("POSSIBLE SLOWDOWN  "), std::string::npos) << text;
   add_timed("again", 7, 1.5, 3);
   comparison = compare({}, true);
   EXPECT_EQ(gate(comparison, "cpu_ms_per_frame")->verdict, GateVerdict::regression);

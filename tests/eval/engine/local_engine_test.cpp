@@ -250,6 +250,17 @@ TEST_F(LocalEngineTest, NoTimeIsPromisedWhereNoRecordingIsThere) {
   EXPECT_NE(text.find("is known when their recordings are there"), std::string::npos) << text;
 }
 
+TEST_F(LocalEngineTest, NamesHowManyRunsTheEstimateExcludes) {
+  PlanPreview preview;
+  preview.runs = {{"a full", JobState::waiting, "", 0},
+                  {"b full", JobState::unknown, "its recording will be simulated first", 0}};
+  preview.waiting = 1;
+  preview.unknown = 1;
+  preview.time_s = 60;
+  const std::string text = to_text(preview, {}, 2);
+  EXPECT_NE(text.find("; the estimate excludes 1 run\n"), std::string::npos) << text;
+}
+
 TEST_F(LocalEngineTest, WindowsThatAreNotThereAreRowsOfTheirOwn) {
   BatchPlan planned = plan();
   const BatchJob first = planned.jobs[0];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eval/findings/overview.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -51,7 +52,7 @@ TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
   const auto found = rankings();
   ASSERT_EQ(found.size(), 1U);
   const std::string sentence = sentences_of(found[0]).front();
-  testing::expect_contains(sentence, "full has the smallest ATE on one recorded recording: 1.00 cm");
+  testing::expect_contains(sentence, "full has the smallest ATE on one real recording: 1.00 cm");
   testing::expect_contains(sentence, "dm with 2.00 cm, 2.00 times as much");
   testing::expect_contains(sentence, "One recording each: no evidence");
   EXPECT_FALSE(found[0].configurations[1].to_best->interval.has_value());
@@ -61,7 +62,7 @@ TEST_F(FindingsTest, EqualOnesAreNotRanked) {
   add_run("a", "full", 0.01);
   add_run("a", "dm", 0.01);
   EXPECT_EQ(sentences_of(rankings().at(0)).front(),
-            "full and dm have the same ATE on one recorded recording: 1.00 cm.");
+            "full and dm have the same ATE on one real recording: 1.00 cm.");
 }
 
 TEST_F(FindingsTest, PosesAtTheEndAreHeldAgainstThoseOnTheWay) {
@@ -108,8 +109,7 @@ TEST_F(FindingsTest, ADifferenceIsJudgedByItsIntervalOverRecordings) {
   EXPECT_NEAR(clear[0].configurations[1].to_best->ratio, 1.3, 1e-9);
   EXPECT_GT((*clear[0].configurations[1].to_best->interval)[0], 1.2);
   testing::expect_contains(sentences_of(clear[0]).front(), "more than the differences between recordings");
-  testing::expect_contains(sentences_of(clear[0]).front(),
-                           "(geometric mean; means in the table of results are arithmetic)");
+  testing::expect_contains(sentences_of(clear[0]).front(), "(geometric mean over recordings)");
 
   runs_.clear();
   for (const auto& [name, dm_m] : {std::pair{"a", 0.02}, {"b", 0.006}, {"c", 0.012}}) {
@@ -142,11 +142,57 @@ TEST_F(FindingsTest, WhoLostARecordingIsComparedWhereBothHaveNumbers) {
   EXPECT_FALSE(found[0].configurations[1].value.has_value());
   EXPECT_NEAR(found[0].configurations[1].to_best->ratio, 0.5, 1e-12);
   const std::string sentence = sentences_of(found[0]).front();
-  testing::expect_contains(sentence, "full alone has an ATE on all of 2 recorded recordings");
+  testing::expect_contains(sentence, "full alone has an ATE on all of 2 real recordings");
   testing::expect_contains(sentence, "Where both have one, dm has 0.50 times as much");
   const auto failures = failures_of(tables::table_of(runs_));
   ASSERT_EQ(failures.size(), 1U);
   testing::expect_contains(failures[0], "1 of 4 runs did not end well: dm on b (lost: too many lost frames)");
+}
+
+TEST_F(FindingsTest, TheOverviewHasANumberForEachRecordingAndMethodAndTheBestMarked) {
+  add_run("a", "full", 0.01);
+  add_run("b", "full", 0.04);
+  add_run("c", "full", 0.03);
+  add_run("a", "dm", 0.02);
+  add_run("b", "dm", 0.02);
+  add_run("c", "dm", 0.0, "too many lost frames");
+  runs_[3].record.frames = {100, 42, 58};
+  const auto found = rankings();
+  const Overview overview = overview_of(found.at(0), tables::table_of(runs_));
+  ASSERT_EQ(overview.rows.size(), 3U);
+  EXPECT_EQ(overview.rows[0].recording, "a");
+  EXPECT_NEAR(overview.rows[0].cells.at(0).value->median, 0.01, 1e-12);
+  EXPECT_TRUE(overview.rows[0].cells[0].best);
+  EXPECT_FALSE(overview.rows[0].cells[1].best);
+  EXPECT_NEAR(*overview.rows[0].cells[1].tracked_share, 0.42, 1e-12);
+  EXPECT_TRUE(overview.rows[1].cells[1].best);
+  EXPECT_FALSE(overview.rows[2].cells[0].best) << "there is no other";
+  EXPECT_FALSE(overview.rows[2].cells[1].value);
+  EXPECT_EQ(overview.rows[2].cells[1].status, RunStatus::lost);
+  EXPECT_NEAR(*overview.means[0].ratio, std::cbrt(2.0), 1e-12);
+  EXPECT_EQ(overview.means[1].recordings, 2U);
+}
+
+TEST_F(FindingsTest, ReplicatesWhoseRangesOverlapAreAllBest) {
+  const auto add_replicates = [&](const std::string& variant, std::initializer_list<double> ate_m) {
+    int replicate = 0;
+    for (const double value : ate_m) {
+      add_run("a", variant, value);
+      runs_.back().record.replicate = replicate++;
+    }
+  };
+  add_replicates("full", {0.010, 0.012, 0.011});
+  add_replicates("dm", {0.0115, 0.013, 0.014});
+  add_replicates("no-imu", {0.02, 0.03, 0.025});
+  const auto found = rankings();
+  const Overview overview = overview_of(found.at(0), tables::table_of(runs_));
+  const auto& cells = overview.rows.at(0).cells;
+  ASSERT_EQ(cells.size(), 3U);
+  EXPECT_NEAR(cells[0].value->least, 0.010, 1e-12);
+  EXPECT_NEAR(cells[0].value->median, 0.011, 1e-12);
+  EXPECT_NEAR(cells[0].value->most, 0.012, 1e-12);
+  EXPECT_TRUE(cells[0].best && cells[1].best);
+  EXPECT_FALSE(cells[2].best);
 }
 
 TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
@@ -169,7 +215,7 @@ TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
   EXPECT_EQ(found[0].configurations[1].label, "dm synthetic IMU");
   EXPECT_EQ(found[0].configurations[2].label, "dm recorded IMU");
   ASSERT_EQ(found[1].configurations.size(), 1U);
-  testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one recorded recording, frames 0:4");
+  testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one real recording, frames 0:4");
 
   runs_.clear();  // windows that share no frame are samples of the recording
   add_window("full", 0, 5, 0.01);
@@ -190,7 +236,7 @@ TEST_F(FindingsTest, ARunWithoutGroundTruthHasItsIntensityErrorSaid) {
   const auto found = rankings();
   ASSERT_EQ(found.size(), 1U);
   testing::expect_contains(sentences_of(found[0]).front(),
-                           "full has an AIE of 6.000 grey on one recorded recording.");
+                           "full has an AIE of 6.000 grey on one real recording.");
 
   add_run("a", "dm", 0.01);
   runs_.back().record.metrics =

@@ -56,6 +56,9 @@ TEST(InspectionText, PutsErrorsFirst) {
   EXPECT_THAT(text, HasSubstr("clean (memory): 30 frames"));
   EXPECT_LT(text.find("error    depth"), text.find("note "));
   EXPECT_THAT(text, HasSubstr("angular speed"));
+  EXPECT_THAT(text, HasSubstr("hypothesis: inverted poses"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("scaled depth +accepted \\("));
+  EXPECT_THAT(text, ::testing::ContainsRegex("inverted poses +rejected \\("));
 }
 
 TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {

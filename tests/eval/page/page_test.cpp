@@ -28,6 +28,36 @@ TEST(Page, ColumnsOfNumbersAreMarkedAndTheBestOfThemIs) {
   testing::expect_contains(html, "<th scope=\"col\">ATE</th>");
 }
 
+TEST(Page, ASortableTableKeepsItsMeansAtTheEnd) {
+  PageTable table;
+  table.header = {"run", "ATE"};
+  table.rows = {{{"full", "1.20"}, "warning"}, {{"mean", "1.20"}, "", {}, true}};
+  table.sortable = true;
+  const std::string html = html_of({"s", "", table});
+  testing::expect_contains(html, "<table class=\"n2 sortable\">");
+  testing::expect_contains(html, "<tr class=\"warning\"><td>full</td>");
+  testing::expect_contains(html, "<tr class=\"fixed\"><td>mean</td>");
+}
+
+TEST(Page, AFoldedPartHoldsItsSectionsAndAFoldedSectionItself) {
+  PageSection part{"part", "", PageParagraphs{{"in the part"}}};
+  part.folded = true;
+  PageSection notes{"notes", "", PageParagraphs{{"in the notes"}}, 3};
+  notes.folded = true;
+  PageSection after{"after", "", PageParagraphs{{"behind"}}};
+  const std::string html = to_html({"t", "", {part, notes, after}});
+  const std::string body = html.substr(html.find("<section"), html.find("<script") - html.find("<section"));
+  EXPECT_EQ(body,
+            "<section class=\"part\" id=\"part-0\">\n"
+            "<details class=\"fold\"><summary><h2 id=\"section-0\">part</h2>\n</summary>\n"
+            "<div class=\"paragraphs\">\n<p>in the part</p>\n</div>\n"
+            "<details class=\"fold\"><summary><h3 id=\"section-1\">notes</h3>\n</summary>\n"
+            "<div class=\"paragraphs\">\n<p>in the notes</p>\n</div>\n</details>\n"
+            "</details>\n</section>\n"
+            "<section class=\"part\" id=\"part-2\">\n<h2 id=\"section-2\">after</h2>\n"
+            "<div class=\"paragraphs\">\n<p>behind</p>\n</div>\n</section>\n");
+}
+
 TEST(Page, ANumberOutsideOfItsRangeIsANumberStill) {
   PageTable table;
   table.header = {"variant", "NEES / dof", "text"};

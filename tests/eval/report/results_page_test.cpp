@@ -129,6 +129,30 @@ TEST_F(ResultsPageTest, ChartsShowWhatTheFilesSay) {
   EXPECT_EQ(series_of_chart(tracking, "Time of the stages", "update").points[1].y(), 12);
 }
 
+TEST_F(ResultsPageTest, PathsAreColouredByTheirErrorsInOneRange) {
+  const FoundRun full = add_run("full", kFrames, SE3{});
+  const FoundRun no_imu = add_run("no-imu", 30, SE3{});
+  std::vector<RunSeries> runs = {series_of(full, "full"), series_of(no_imu, "no-imu")};
+  runs[1].poses[7].error_m = 0.06;
+  const auto charts = error_path_charts(runs, 100);
+  ASSERT_EQ(charts.size(), 2U);
+  const ChartSeries& path = series_of_chart(charts, "x-y view by error: no-imu", "no-imu");
+  ASSERT_EQ(path.values.size(), path.points.size());
+  EXPECT_NEAR(path.values[7], 6, 1e-9);
+  EXPECT_NEAR(path.values[8], 2, 1e-6);
+  for (const Chart& chart : charts) {
+    EXPECT_NEAR(chart.value_colours->top, 6, 1e-9);
+    EXPECT_EQ(chart.value_colours->label, "position error [cm]");
+  }
+  const std::string html = to_html({"t", "", {{"s", "", charts}}});
+  EXPECT_NE(html.find("<span>6 and more</span><span>position error [cm]</span>"), std::string::npos);
+  EXPECT_NE(html.find(",6.0]"), std::string::npos) << "a point with its value";
+  EXPECT_NE(gnuplot_script(charts[1], "f.svg", FigureFormat::svg).find("lc palette"), std::string::npos);
+  runs[0].poses.clear();
+  runs[1].poses.clear();
+  EXPECT_TRUE(error_path_charts(runs, 100).empty());
+}
+
 TEST_F(ResultsPageTest, TheFirstBinOfAHistogramIsAsWideAsTheOthers) {
   const FoundRun full = add_run("full", kFrames, SE3{});
   const auto charts = error_charts(std::vector<RunSeries>{series_of(full, "full")}, 100);
@@ -205,14 +229,16 @@ TEST_F(ResultsPageTest, TheHeadSaysWhatWasFoundBeforeAllTables) {
   const auto runs = find_runs(folder_ / "runs");
   ASSERT_TRUE(runs.has_value());
   const ResultsPage result = results_page(*runs, "Circles");
-  EXPECT_EQ(result.page.sections.front().title, "What was found");
-  const auto& lines = std::get<PageParagraphs>(result.page.sections.front().content).lines;
+  EXPECT_EQ(result.page.sections.front().title, "ATE [cm] by recording and method");
+  EXPECT_EQ(result.page.sections[1].title, "What was found");
+  const auto& lines = std::get<PageParagraphs>(result.page.sections[1].content).lines;
   EXPECT_NE(lines[0].find("full"), std::string::npos) << lines[0];
   const bool failed = std::ranges::any_of(lines, [](const std::string& line) {
     return line.find("no-imu on circle (lost: lost at the end)") != std::string::npos;
   });
   EXPECT_TRUE(failed);
-  EXPECT_EQ(result.page.sections[1].title, "What was compared");
+  EXPECT_EQ(result.page.sections[2].title, "What was compared");
+  EXPECT_TRUE(result.page.sections[2].folded) << "details";
 }
 
 TEST_F(ResultsPageTest, OnlyProfiledRunsHaveAProfile) {

@@ -41,7 +41,7 @@ TEST(SpeedSections, CountsTheFramesOfEachMethod) {
   EXPECT_EQ(table.header[3], "100 to 150 deg/s");
   EXPECT_EQ(table.rows[1].cells[0], "icp");
   EXPECT_EQ(table.rows[1].cells[2], "-");
-  EXPECT_TRUE(table.rows[1].cells[3].ends_with("(10 lost, 0 silent)")) << table.rows[1].cells[3];
+  EXPECT_TRUE(table.rows[1].cells[3].ends_with("(10 lost, 0 undetected)")) << table.rows[1].cells[3];
   EXPECT_TRUE(table.rows[0].cells[3].starts_with("0 % of 2")) << table.rows[0].cells[3];
 }
 

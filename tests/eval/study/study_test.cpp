@@ -141,6 +141,54 @@ TEST_F(StudyTest, TheOtherSplitStandsBeside) {
   EXPECT_DOUBLE_EQ(*result.beside.measured, 0.03);
 }
 
+TEST_F(StudyTest, TheCellOfASplitWithoutRunsIsBlank) {
+  add("a", "slow", "full", 0.01);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.split = "held-out";
+  criterion.at_most = 0.02;
+  const auto others = [&] {
+    return criteria_table(check_criteria(study(), std::vector{criterion})).rows[0][6];
+  };
+  EXPECT_EQ(others(), "");
+  add("t1", "slow", "full", 0.03);
+  EXPECT_EQ(others(), "tuning: 0.03 m (FAIL, 1 recording)");
+  criterion.groups = {"fast"};
+  EXPECT_EQ(criteria_table(check_criteria(study(), std::vector{criterion})).rows[0][0], "not decided");
+}
+
+TEST_F(StudyTest, ThePageSaysTheVerdictInItsTitleAndTheUnitsOfItsNumbers) {
+  add("a", "slow", "full", 0.01);
+  add("b", "slow", "full", 0.03);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.at_most = 0.02;
+  const Study all = study();
+  std::string page = summary_page(summarise("demo", all, std::vector{criterion}), all);
+  EXPECT_NE(page.find("<h1>Study demo: FAIL, 1 of 1 criteria failed</h1>"), std::string::npos);
+  EXPECT_NE(page.find("<td>0.03 m</td><td>&lt;= 0.02 m</td>"), std::string::npos);
+  EXPECT_NE(page.find("<td>mean\nmedian\nworst</td>"), std::string::npos);
+  criterion.at_most = 0.04;
+  page = summary_page(summarise("demo", all, std::vector{criterion}), all);
+  EXPECT_NE(page.find("<h1>Study demo: PASS, 1 of 1 criteria passed</h1>"), std::string::npos);
+  EXPECT_NE(summary_page(summarise("demo", all, {}), all).find("<h1>Study demo</h1>"), std::string::npos);
+}
+
+TEST_F(StudyTest, OverconfidenceAndUnderconfidenceAreToldApart) {
+  const auto word_of = [&](double nees) {
+    runs_.clear();
+    NeesResult result;
+    result.stats = statistics(std::vector<double>{nees});
+    add("a", "slow", "full", 0.01).record.metrics.nees[0] = {result, {}};
+    std::string words;
+    for (const SummaryTable& table : value_tables(summarise("demo", study(), {}))) {
+      if (!table.title.starts_with("NEES")) continue;
+      for (const std::string& cell : table.rows.at(0)) words += cell == "-" ? "" : cell;
+    }
+    return words;
+  };
+  EXPECT_TRUE(word_of(1e3).ends_with(") overconfident")) << word_of(1e3);
+  EXPECT_TRUE(word_of(1e-3).ends_with(") underconfident")) << word_of(1e-3);
+}
+
 TEST_F(StudyTest, ALostRunFailsACriterionAndNoRunDecidesNothing) {
   add("a", "slow", "full", 0.001);
   add("b", "slow", "full", 0.001, RunStatus::lost);

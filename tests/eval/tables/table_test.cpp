@@ -204,7 +204,7 @@ TEST_F(TableTest, AMeanOverPartsOfARecordingSaysSo) {
 TEST_F(TableTest, AMeanSaysThatItCountsRunsAsSilentAndARowFrames) {
   ResultTable table;
   table.means.push_back({"recorded", "none", "given", "full", "full", 2, 2, 2, 1, {}, 2});
-  EXPECT_EQ(table_cells(table).back()[4], "2/2 ok (1 run silent)");
+  EXPECT_EQ(table_cells(table).back()[4], "2/2 ok (1 run with undetected failures)");
 }
 
 TEST_F(TableTest, TwoRunsOfOneVariantAreToldApart) {

@@ -1,0 +1,16 @@
+// The first table of a page of runs: which method won on which recording, and by how much.
+#pragma once
+
+#include "eval/findings/ranking.hpp"
+#include "eval/page/page.hpp"
+#include "eval/tables/table.hpp"
+
+namespace fusebench::report {
+
+/// Recordings by methods, each cell with its range over replicates, the share of tracked frames and
+/// undetected failures, and the mean ratio to the best of each recording below. Of many methods: methods by
+/// recordings. only: whether it is the page's only ranking.
+[[nodiscard]] page::PageSection overview_section(const findings::Ranking& ranking,
+                                                 const tables::ResultTable& table, bool only);
+
+}  // namespace fusebench::report

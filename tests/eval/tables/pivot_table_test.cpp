@@ -1,0 +1,53 @@
+#include "eval/tables/pivot_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/eval/tables/folder_of_runs.hpp"
+#include "tests/support/collected_table.hpp"
+
+namespace fusebench {
+
+using namespace record;
+using namespace tables;
+
+namespace {
+
+using testing::collect_table;
+
+using PivotTableTest = testing::InFolderOfRuns;
+
+TEST_F(PivotTableTest, HasALineARecordingAndAColumnAMethodWithTheBestInBold) {
+  add_run("full", RunStatus::ok, "", 0.0123, {});
+  add_run("dm", RunStatus::ok, "", 0.02, {});
+  add_run("no-imu", RunStatus::lost, "why", 0, {});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  const registry::RunMetric& ate = registry::run_metric("ate_rmse_m");
+  const std::string latex = render_pivot(*table, ate, TableFormat::latex, {1, false}).value();
+  EXPECT_NE(latex.find(" & \\textbf{1.23} & 2.00 & lost"), std::string::npos) << latex;
+  EXPECT_NE(latex.find("\\begin{table}"), std::string::npos);
+  EXPECT_NE(latex.find("\\label{tab:pivot-ate-rmse-m}"), std::string::npos);
+  const std::string csv = render_pivot(*table, ate, TableFormat::csv).value();
+  EXPECT_NE(csv.find(",0.0123,0.02,\n"), std::string::npos) << csv;
+  const std::string markdown = render_pivot(*table, ate, TableFormat::markdown).value();
+  EXPECT_NE(markdown.find("1.23"), std::string::npos) << markdown;
+  EXPECT_EQ(render_pivot(*table, ate, TableFormat::json).error().code, ErrorCode::usage);
+}
+
+TEST_F(PivotTableTest, ChosenColumnsAloneAreInTheTableOfRuns) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  LatexLayout layout{1, false, {"ate_rmse_m", "frames_tracked"}};
+  ASSERT_TRUE(check_latex_metrics(layout.metrics).has_value());
+  const std::string latex = render_table(*table, TableFormat::latex, layout);
+  EXPECT_NE(latex.find("status & ATE [cm] & tracked \\\\"), std::string::npos) << latex;
+  EXPECT_NE(latex.find("\\textbf{1.23} &"), std::string::npos) << latex;
+  const auto unknown = check_latex_metrics({"ate"});
+  ASSERT_FALSE(unknown.has_value());
+  EXPECT_NE(unknown.error().message.find("ate_rmse_m"), std::string::npos) << unknown.error().message;
+}
+
+}  // namespace
+}  // namespace fusebench
