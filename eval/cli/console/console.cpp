@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/text/text_layout.hpp"
 
 namespace fusebench::cli::console {
@@ -108,6 +109,8 @@ void ProgressBar::clear() {
 
 std::string summary_line(const record::RunRecord& record) {
   std::string line;
+  if (const auto contradiction = record::noted_contradiction(record))
+    line += fmt::format("{}, but {}; ", record::to_string(record.status), *contradiction);
   if (const auto& aie = record.metrics.aie.value) line += fmt::format("AIE {:.3f}, ", aie->all.aie_grey);
   if (const auto& ate = record.metrics.ate.value) {
     line += fmt::format("ATE {:.2f} cm", 100 * ate->stats.rmse);
