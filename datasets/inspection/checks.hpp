@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/inspection/inspection.hpp"
+#include "datasets/inspection/measures/force_windows.hpp"
 
 namespace fusebench::inspection {
 
@@ -27,6 +28,9 @@ void check_images(const recording::Recording& recording, const Workers& workers,
 /// Whether edges of depth lie on edges of colour. Needs images.
 void check_registration(const recording::Recording& recording, const Workers& workers, Inspection& out);
 
+/// Whether the ground truth stands still while the images move.
+void check_truth_moves(const recording::Recording& recording, const Workers& workers, Inspection& out);
+
 /// Speeds and predicted blur. Needs the median depth of images.
 void check_motion(const recording::Recording& recording, Inspection& out);
 
@@ -41,7 +45,9 @@ void check_imu_values(const recording::Recording& recording, Inspection& out);
 /// was found in it so far, else those of the images. Needs the checks of the truth and its warping.
 void check_imu_alignment(const recording::Recording& recording, const Workers& workers,
                          const InspectOptions& options, Inspection& out);
-/// Gravity and accelerometer bias against ground truth. Needs the alignment.
+/// Axes of gyroscope and accelerometer, each on its own. Needs the alignment.
+void check_imu_axes(const recording::Recording& recording, Inspection& out);
+/// Gravity and accelerometer bias against ground truth. Needs the axes.
 void check_accelerometer(const recording::Recording& recording, Inspection& out);
 
 /// Frames warped by ground truth, and what would make them fit better. Needs images.
@@ -54,6 +60,12 @@ void check_reprojection(const recording::Recording& recording, const Workers& wo
 /// The longest interval between two poses of the ground truth that is still interpolated: 0.1 s, or two and a
 /// half median intervals of a sparser truth.
 [[nodiscard]] std::int64_t truth_gap_ns(const recording::Recording& recording);
+
+/// Whether the poses, by what was found so far, are those of the camera at their stamps.
+[[nodiscard]] bool truth_is_usable(const Inspection& out);
+
+/// The path of the IMU's axes, as they are calibrated or, if it is measured well, as the turns show.
+[[nodiscard]] measures::TruePath true_path(const recording::Recording& recording, const Inspection& out);
 
 /// Whether the frames' stamps are in seconds, and so speeds mean something.
 [[nodiscard]] bool times_are_plausible(const Inspection& out);

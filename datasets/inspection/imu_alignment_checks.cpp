@@ -1,16 +1,19 @@
-// The IMU against the camera's turns: clock, axes, unit, bias.
+// The IMU against the camera's turns: clock, unit, bias, and what they show of its axes.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/base/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/measures/signed_permutations.hpp"
 #include "datasets/inspection/measures/turn_alignment.hpp"
 
 namespace fusebench::inspection {
@@ -20,58 +23,10 @@ namespace {
 constexpr double kMinExplained = 0.5;       // less than half of the variance: not the same motion
 constexpr double kOffsetWarning_s = 0.004;  // an eighth of a frame
 constexpr double kOffsetError_s = 0.010;
-constexpr double kRotationWarning_rad = radians(2);
-constexpr double kRotationError_rad = radians(5);
 constexpr double kSwapTolerance_rad = radians(20);
-constexpr double kKnown_rad = radians(3);  // largest uncertainty of a rotation that is reported
+constexpr double kMaxSwapTolerance_rad = radians(40);  // the nearest other permutation is 60 degrees off
+constexpr double kKnown_rad = radians(3);              // largest uncertainty of a rotation that is reported
 constexpr double kSigmas = 4;
-
-struct SignedPermutation {
-  Matrix3d matrix = Matrix3d::Identity();
-  double distance_rad = 0;  ///< of the given matrix from it
-};
-
-/// The nearest of the 24 that have the determinant of the given orthogonal matrix.
-SignedPermutation nearest_permutation(const Matrix3d& given) {
-  SignedPermutation best;
-  double best_trace = -4;
-  std::array<int, 3> order{0, 1, 2};
-  do {
-    for (int signs = 0; signs < 8; ++signs) {
-      Matrix3d candidate = Matrix3d::Zero();
-      for (int row = 0; row < 3; ++row)
-        candidate(row, order[static_cast<std::size_t>(row)]) = (signs >> row & 1) == 0 ? 1 : -1;
-      if (candidate.determinant() * given.determinant() < 0) continue;
-      const double trace = (candidate.transpose() * given).trace();
-      if (trace > best_trace) {
-        best_trace = trace;
-        best.matrix = candidate;
-      }
-    }
-  } while (std::ranges::next_permutation(order).found);
-  best.distance_rad = std::acos(std::clamp((best_trace - 1) / 2, -1.0, 1.0));
-  return best;
-}
-
-/// "(y, -x, z)": what the measured axes hold in terms of the calibrated ones.
-std::string permutation_text(const Matrix3d& permutation) {
-  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
-  std::string text = "(";
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      const double value = permutation(row, column);
-      if (value == 0) continue;
-      text += fmt::format("{}{}{}", row == 0 ? "" : ", ", value < 0 ? "-" : "",
-                          kNames[static_cast<std::size_t>(column)]);
-    }
-  }
-  return text + ")";
-}
-
-std::string matrix_text(const Matrix3d& m) {
-  return fmt::format("[{:.4f} {:.4f} {:.4f}; {:.4f} {:.4f} {:.4f}; {:.4f} {:.4f} {:.4f}]", m(0, 0), m(0, 1),
-                     m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2));
-}
 
 void report_offset(const ImuAlignment& a, Inspection& out) {
   const double offset_s = std::abs(a.time_offset_s);
@@ -84,82 +39,81 @@ void report_offset(const ImuAlignment& a, Inspection& out) {
       fmt::format("add {:+.4f} to time_offset_s in [imu] of calibration.toml", a.time_offset_s));
 }
 
-/// No rotation fits: the axes are exchanged or negated so that they are left-handed.
-void report_mirrored(const ImuAlignment& a, const SignedPermutation& nearest, Inspection& out) {
-  const std::string hold =
-      nearest.distance_rad < kSwapTolerance_rad && a.rotation_sigma_rad < kKnown_rad
-          ? fmt::format("swapped and mirrored: its (x, y, z) hold {} of the axes that T_imu_camera describes",
-                        permutation_text(nearest.matrix))
-          : fmt::format("mirrored: only a reflection fits the turns of the {}", a.source);
-  out.add("imu-axes-swapped", Severity::error, "the axes of the IMU are " + hold,
-          "exchange the columns of the IMU's file, or negate one: no rotation repairs a mirrored sensor");
-}
+/// A unit that a gyroscope's values may be in.
+struct GyroscopeUnit {
+  double per_radps;  ///< its values of 1 rad/s
+  std::string_view text;
+};
+constexpr std::array<GyroscopeUnit, 5> kGyroscopeUnits = {
+    GyroscopeUnit{kDegreesPerRadian, "its values are in degrees per second"},
+    GyroscopeUnit{1 / kDegreesPerRadian, "its values were converted from degrees twice"},
+    GyroscopeUnit{1000, "its values are in milliradians per second"},
+    GyroscopeUnit{1000 * kDegreesPerRadian, "its values are in thousandths of a degree per second"},
+    GyroscopeUnit{60 / (2 * std::numbers::pi), "its values are in revolutions per minute"}};
+constexpr double kUnitScale = 1.25;  // how far a scale may be from 1 in the right unit
+constexpr double kNoUnitScale = 2;   // beyond it, the unit is wrong whichever it is
 
-/// Whether the axes are as calibrated.
-void report_rotation(const ImuAlignment& a, const Matrix3d& calibrated, Inspection& out) {
-  const Matrix3d measured_calibrated = a.rotation_imu_camera * calibrated.transpose();
-  const SignedPermutation nearest = nearest_permutation(measured_calibrated);
-  if (!a.rotation_error_rad) {
-    report_mirrored(a, nearest, out);
-    return;
-  }
-  const bool identity = nearest.matrix.isIdentity();
-  const bool known = a.rotation_sigma_rad < kKnown_rad;
-  if (!identity && nearest.distance_rad < kSwapTolerance_rad && known) {
-    out.add(
-        "imu-axes-swapped", Severity::error,
-        fmt::format("the axes of the IMU are swapped: its (x, y, z) hold {} of the axes that T_imu_camera "
-                    "describes",
-                    permutation_text(nearest.matrix)),
-        fmt::format("exchange the columns of the IMU's file, or set the rotation of T_imu_color in [imu] of "
-                    "calibration.toml to {}",
-                    matrix_text(a.rotation_imu_camera)));
-    return;
-  }
-  const double error_rad = *a.rotation_error_rad;
-  if (error_rad < kRotationWarning_rad || error_rad < kSigmas * a.rotation_sigma_rad || !known) return;
-  out.add("extrinsic-rotated", error_rad >= kRotationError_rad ? Severity::error : Severity::warning,
-          fmt::format("the rotation of T_imu_camera is {:.1f} deg (+- {:.1f}) from the one that fits the "
-                      "turns of the {} best",
-                      kDegreesPerRadian * error_rad, kDegreesPerRadian * a.rotation_sigma_rad, a.source),
-          fmt::format("the best rotation for T_imu_color in [imu] of calibration.toml is {}",
-                      matrix_text(a.rotation_imu_camera)));
-}
-
-/// A factor of the gyroscope by which its values would be in degrees, or 1.
-double unit_of(double scale) {
-  const double magnitude = std::abs(scale);
-  if (magnitude > 0.8 * kDegreesPerRadian && magnitude < 1.25 * kDegreesPerRadian) return kDegreesPerRadian;
-  if (magnitude > 0.8 / kDegreesPerRadian && magnitude < 1.25 / kDegreesPerRadian)
-    return 1 / kDegreesPerRadian;
-  return 1;
-}
+bool is_near_one(double scale, double factor) { return scale < factor && scale > 1 / factor; }
 
 void report_scale(const ImuAlignment& a, Inspection& out) {
-  const double unit = unit_of(a.scale);
-  if (unit != 1) {
-    out.add("gyroscope-unit", Severity::error,
-            fmt::format("the gyroscope turns {:.4g} times as far as the camera: its values {}", a.scale,
-                        unit > 1 ? "are in degrees per second" : "were converted from degrees twice"),
-            fmt::format("multiply them by {:.6g}", 1 / unit));
-    return;
-  }
-  if (std::abs(a.scale - 1) < 0.05) return;
-  out.add(
-      "gyroscope-scale", std::abs(a.scale - 1) > 0.2 ? Severity::error : Severity::warning,
-      fmt::format("the gyroscope turns {:.3f} times as far as the {}", a.scale,
-                  a.source == "images" ? "images: its scale, or the focal length, is off" : "ground truth"),
-      a.source == "images" ? "check fx_px and fy_px of the calibration, then the gyroscope's unit"
-                           : "check the gyroscope's unit");
+  if (is_near_one(a.scale, 1.05)) return;
+  const bool no_unit = !is_near_one(a.scale, kNoUnitScale);
+  if (no_unit) out.imu->gyroscope_unit = 0;
+  const bool by_images = a.source == "images";
+  out.add(no_unit ? "gyroscope-unit" : "gyroscope-scale",
+          std::abs(a.scale - 1) > 0.2 ? Severity::error : Severity::warning,
+          no_unit
+              ? fmt::format("the gyroscope turns {:.3g} times as far as the {}: its values are not in rad/s",
+                            a.scale, a.source)
+              : fmt::format("the gyroscope turns {:.3f} times as far as the {}", a.scale,
+                            by_images ? "images: its scale, or the focal length, is off" : "ground truth"),
+          by_images ? "check fx_px and fy_px of the calibration, then the gyroscope's unit"
+                    : "check the gyroscope's unit");
 }
 
-void report_bias(const ImuAlignment& a, Inspection& out) {
+void report_gyroscope_unit(const GyroscopeUnit& unit, Inspection& out) {
+  out.imu->gyroscope_unit = 1 / unit.per_radps;
+  out.add("gyroscope-unit", Severity::error,
+          fmt::format("the gyroscope turns {:.4g} times as far as the camera: {}", unit.per_radps, unit.text),
+          fmt::format("multiply them by {:.6g}", 1 / unit.per_radps));
+}
+
+void report_bias(Inspection& out) {
   const double bias = out.imu->gyroscope_bias_radps->norm();
-  if (bias < 0.1 || unit_of(a.scale) != 1) return;
+  if (bias < 0.1 || out.imu->gyroscope_unit != 1) return;
   out.add("gyroscope-bias", Severity::warning,
           fmt::format("the gyroscope's bias is {:.3f} rad/s ({:.1f} deg/s), by the {}", bias,
                       kDegreesPerRadian * bias, out.imu->bias_source),
           "start from rest, or widen the prior of the bias");
+}
+
+/// The signed permutation of the calibrated axes that the turns show, and how well it does.
+void choose_gyroscope_axes(const measures::TurnAlignment& fit, const Matrix3d& calibrated, ImuAlignment& a) {
+  const auto all = measures::signed_permutations();
+  const bool mirrored = fit.rotation_imu_camera.determinant() < 0;
+  const auto candidates =
+      mirrored ? all.subspan(measures::kProperPermutations) : all.first(measures::kProperPermutations);
+  std::vector<double> costs;
+  for (const Matrix3d& axes : candidates) costs.push_back(fit.cost_of(axes * calibrated));
+  measures::AxesChoice choice = measures::choose_axes(costs, 0, fit.freedom);
+  if (mirrored) {
+    // That the axes are mirrored is known from the fit; the question is which of them.
+    const auto best = std::ranges::min_element(costs);
+    choice.index = static_cast<std::size_t>(best - costs.begin());
+    choice.ratio = std::sqrt(*best / std::max(1e-300, fit.cost_of(calibrated)));
+    choice.is_clear = fit.rotation_sigma_rad < kKnown_rad;
+    choice.is_unique = choice.is_clear;
+  }
+  const Matrix3d& axes = candidates[choice.index];
+  const double trace = (axes * calibrated).cwiseProduct(fit.rotation_imu_camera).sum();
+  const double distance_rad = std::acos(std::clamp((std::abs(trace) - 1) / 2, -1.0, 1.0));
+  const double tolerance_rad =
+      std::min(kMaxSwapTolerance_rad, kSwapTolerance_rad + 2 * fit.rotation_sigma_rad);
+  if (!choice.is_clear || distance_rad > tolerance_rad || costs[choice.index] > kMinExplained * fit.imu_rad2)
+    return;
+  a.axes = axes;
+  a.axes_ratio = choice.ratio;
+  a.axes_unique = choice.is_unique;
 }
 
 ImuAlignment measured_alignment(const measures::TurnAlignment& fit, const measures::CameraTurns& turns,
@@ -175,6 +129,7 @@ ImuAlignment measured_alignment(const measures::TurnAlignment& fit, const measur
   a.gyroscope_bias_radps = fit.bias_radps;
   a.residual_radps = fit.residual_radps;
   a.explained = fit.explained;
+  choose_gyroscope_axes(fit, rig.T_imu_camera.rotation_matrix(), a);
   if (fit.rotation_imu_camera.determinant() < 0) return a;
   const Matrix3d difference = fit.rotation_imu_camera * rig.T_imu_camera.rotation_matrix().transpose();
   a.rotation_error_rad = std::acos(std::clamp((difference.trace() - 1) / 2, -1.0, 1.0));
@@ -191,35 +146,49 @@ std::vector<TurnRate> rates_of(const measures::CameraTurns& turns, std::int64_t 
   return rates;
 }
 
-/// Whether the poses, by what was found so far, are those of the camera at their stamps.
-bool truth_is_usable(const Inspection& out) {
-  return out.truth && out.truth->coverage > 0 &&
-         std::ranges::none_of(out.findings, [](const Finding& finding) {
-           return finding.severity == Severity::error && finding.code.starts_with("truth-");
-         });
+/// The samples in rad/s.
+std::vector<ImuSample> in_unit(std::vector<ImuSample> samples, const GyroscopeUnit& unit) {
+  for (ImuSample& sample : samples) sample.angular_velocity_radps /= unit.per_radps;
+  return samples;
 }
 
-/// Turns of the camera, and how those of the gyroscope fit them.
+/// Turns of the camera, and how those of the gyroscope fit them: in rad/s, or in the other unit that fits
+/// best.
 struct ComparedTurns {
   measures::CameraTurns turns;
   std::optional<measures::TurnAlignment> fit;
+  std::optional<GyroscopeUnit> unit;  ///< nothing: rad/s
 
-  ComparedTurns(measures::CameraTurns camera, const measures::GyroscopeIntegral& gyroscope)
-      : turns(std::move(camera)), fit(measures::align_turns(turns, gyroscope)) {}
+  ComparedTurns(measures::CameraTurns camera, const std::vector<ImuSample>& samples)
+      : turns(std::move(camera)), fit(measures::align_turns(turns, measures::GyroscopeIntegral(samples))) {
+    if (!fit || (related() && is_near_one(fit->scale, kUnitScale))) return;
+    // Turns of more than half a revolution, as those of degrees that are read as radians, are ambiguous: the
+    // scale of such a fit is not that of the units.
+    for (const GyroscopeUnit& other : kGyroscopeUnits) {
+      const auto refit = measures::align_turns(turns, measures::GyroscopeIntegral(in_unit(samples, other)));
+      if (!refit || !is_related(*refit) || !is_near_one(refit->scale, kUnitScale)) continue;
+      if (unit ? refit->explained <= fit->explained : refit->explained < fit->explained - 0.05) continue;
+      fit = refit;
+      unit = other;
+    }
+  }
 
-  [[nodiscard]] bool related() const { return fit && fit->offset_found && fit->explained >= kMinExplained; }
+  [[nodiscard]] static bool is_related(const measures::TurnAlignment& fit) {
+    return fit.offset_found && fit.explained >= kMinExplained;
+  }
+  [[nodiscard]] bool related() const { return fit && is_related(*fit); }
 };
 
 /// With the truth, if there is one without errors. If the gyroscope disagrees with the truth, the images
 /// decide which of the two is wrong.
 ComparedTurns compare_turns(const recording::Recording& recording, const Workers& workers,
                             const InspectOptions& options, Inspection& out) {
-  const measures::GyroscopeIntegral gyroscope(recording.imu);
   const auto by_images = [&] {
-    return ComparedTurns(measures::turns_from_images(recording, workers, options.turn_samples), gyroscope);
+    return ComparedTurns(measures::turns_from_images(recording, workers, options.turn_samples),
+                         recording.imu);
   };
   if (!truth_is_usable(out)) return by_images();
-  ComparedTurns by_truth(measures::turns_from_truth(recording), gyroscope);
+  ComparedTurns by_truth(measures::turns_from_truth(recording), recording.imu);
   if (!by_truth.fit || by_truth.related()) return by_truth;
   ComparedTurns other = by_images();
   if (!other.related()) return by_truth;
@@ -243,12 +212,19 @@ void report_unrelated(const ComparedTurns& compared, Inspection& out) {
 
 }  // namespace
 
+bool truth_is_usable(const Inspection& out) {
+  return out.truth && out.truth->coverage > 0 &&
+         std::ranges::none_of(out.findings, [](const Finding& finding) {
+           return finding.severity == Severity::error && finding.code.starts_with("truth-");
+         });
+}
+
 std::optional<ImuAlignment> align_imu_with_images(const recording::Recording& recording,
                                                   const Workers& workers) {
   if (recording.imu.empty() || recording.frames.size() < 2) return std::nullopt;
   const ComparedTurns compared(measures::turns_from_images(recording, workers, InspectOptions{}.turn_samples),
-                               measures::GyroscopeIntegral(recording.imu));
-  if (!compared.related()) return std::nullopt;
+                               recording.imu);
+  if (!compared.related() || compared.unit) return std::nullopt;
   return measured_alignment(*compared.fit, compared.turns, recording.rig);
 }
 
@@ -271,14 +247,17 @@ void check_imu_alignment(const recording::Recording& recording, const Workers& w
     return;
   }
   const ImuAlignment& a = *out.imu_alignment;
-  if (!out.imu->gyroscope_bias_radps) {
+  if (!out.imu->gyroscope_bias_radps && !compared.unit) {
     out.imu->gyroscope_bias_radps = a.gyroscope_bias_radps;
     out.imu->bias_source = a.source;
   }
   report_offset(a, out);
-  report_rotation(a, recording.rig.T_imu_camera.rotation_matrix(), out);
-  report_scale(a, out);
-  report_bias(a, out);
+  if (compared.unit) {
+    report_gyroscope_unit(*compared.unit, out);
+  } else {
+    report_scale(a, out);
+  }
+  if (out.imu->gyroscope_bias_radps) report_bias(out);
 }
 
 }  // namespace fusebench::inspection

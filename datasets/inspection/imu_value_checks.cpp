@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/geometry.hpp"
@@ -123,14 +125,29 @@ std::optional<Rest> find_rest(const std::vector<Block>& blocks, const ImuNoise& 
   return rest;
 }
 
+/// A unit that an accelerometer's values may be in.
+struct AccelerometerUnit {
+  double mps2;  ///< of 1
+  std::string_view text;
+};
+constexpr std::array<AccelerometerUnit, 3> kAccelerometerUnits = {
+    AccelerometerUnit{9.80665, "units of gravity"}, AccelerometerUnit{0.3048, "ft/s^2"},
+    // cm/s^2 differ from it by 2 %, which is less than the acceleration of a hand.
+    AccelerometerUnit{0.00980665, "thousandths of gravity (or cm/s^2)"}};
+
 /// Units by the median magnitude of the specific force, which in a hand is that of gravity.
 void check_accelerometer_unit(ImuMeasurement& imu, Inspection& out) {
   const double force = imu.specific_force_median_mps2;
-  if (force > 0.8 && force < 1.25) {
+  for (const AccelerometerUnit& unit : kAccelerometerUnits) {
+    if (force * unit.mps2 < 0.8 * kGravity_mps2 || force * unit.mps2 > 1.25 * kGravity_mps2) continue;
+    imu.accelerometer_unit = unit.mps2;
     out.add("accelerometer-unit", Severity::error,
-            fmt::format("the median specific force is {:.2f}: the values are in units of gravity", force),
-            "multiply them by 9.80665");
-  } else if (force < 6) {
+            fmt::format("the median specific force is {:.4g}: the values are in {}", force, unit.text),
+            fmt::format("multiply them by {:.7g}", unit.mps2));
+    return;
+  }
+  if (force < 6) {
+    imu.accelerometer_unit = 0;
     out.add(
         "accelerometer-without-gravity", Severity::error,
         fmt::format(
@@ -138,6 +155,7 @@ void check_accelerometer_unit(ImuMeasurement& imu, Inspection& out) {
             force),
         "the estimator needs the raw specific force, which is 9.81 m/s^2 upwards at rest");
   } else if (force > 16) {
+    imu.accelerometer_unit = 0;
     out.add("accelerometer-unit", Severity::error,
             fmt::format("the median specific force is {:.3g} m/s^2, far from gravity's 9.81", force),
             "check the unit of the accelerometer");
@@ -193,10 +211,11 @@ void check_imu_values(const recording::Recording& recording, Inspection& out) {
   if (out.has("imu-time-unit") || out.has("imu-out-of-order")) return;
   const auto rest = find_rest(blocks_of(samples), recording.rig.imu_noise);
   if (!rest) return;
-  imu.gravity_mps2 = rest->specific_force_mps2.norm();
-  imu.gravity_source = "at rest";
   imu.gyroscope_bias_radps = rest->angular_velocity_radps;
   imu.bias_source = "at rest";
+  if (imu.accelerometer_unit == 0) return;
+  imu.gravity_mps2 = imu.accelerometer_unit * rest->specific_force_mps2.norm();
+  imu.gravity_source = "at rest";
 }
 
 }  // namespace fusebench::inspection

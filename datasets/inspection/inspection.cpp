@@ -71,7 +71,9 @@ Inspection inspect(const recording::Recording& recording, const Workers& workers
   check_imu_values(sound, out);
   check_images(sound, workers, options, out);
   check_reprojection(sound, workers, options, out);
+  check_truth_moves(sound, workers, out);
   check_imu_alignment(sound, workers, options, out);
+  check_imu_axes(sound, out);
   check_accelerometer(sound, out);
   check_motion(sound, out);
   check_repeated_images(sound, out);

@@ -123,6 +123,10 @@ struct ImuMeasurement {
   std::optional<double> gravity_mps2;
   std::optional<Vector3d> gyroscope_bias_radps;
   std::optional<Vector3d> accelerometer_bias_mps2;
+  double accelerometer_unit = 1;  ///< factor from the accelerometer's values to m/s^2; 0 if it is not known
+  /// Signed permutation P: the accelerometer measures P f, with f in the axes that T_imu_camera describes.
+  Matrix3d accelerometer_axes = Matrix3d::Identity();
+  double gyroscope_unit = 1;   ///< factor from the gyroscope's values to rad/s; 0 if it is not known
   std::string gravity_source;  ///< "at rest" or "ground truth"
   std::string bias_source;     ///< of the gyroscope: "at rest", "ground truth", "images"
 };
@@ -143,7 +147,11 @@ struct ImuAlignment {
   std::optional<double> rotation_error_rad;  ///< from the best rotation to the calibration's, unless mirrored
   double rotation_sigma_rad = 0;             ///< of the worst axis
   Matrix3d rotation_imu_camera = Matrix3d::Identity();  ///< the best; determinant -1 if the axes are mirrored
-  double scale = 1;                                     ///< gyroscope's turns divided by the camera's
+  /// Signed permutation P: the gyroscope measures P w, with w in the axes that T_imu_camera describes.
+  Matrix3d axes = Matrix3d::Identity();
+  double axes_ratio = 1;    ///< rms residual with P, divided by that of the axes as calibrated
+  bool axes_unique = true;  ///< no other permutation fits nearly as well
+  double scale = 1;         ///< gyroscope's turns divided by the camera's
   Vector3d gyroscope_bias_radps = Vector3d::Zero();
   double residual_radps = 0;  ///< rms of the difference of the rates
   double explained = 0;       ///< share of the variance of the gyroscope's turns

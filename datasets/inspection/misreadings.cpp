@@ -1,11 +1,16 @@
 #include "datasets/inspection/misreadings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/measures/signed_permutations.hpp"
 
 namespace fusebench::inspection {
 
@@ -18,11 +23,6 @@ constexpr double kLostRatio = 4;  // of a pair that a reading warps out of view
 
 const Eigen::DiagonalMatrix<double, 3> kFlip(1, -1, 1);
 
-SE3 reflected(const SE3& pose) {
-  const Matrix3d rotation = kFlip * pose.rotation_matrix() * kFlip;
-  return {Quaterniond(rotation).normalized(), kFlip * pose.translation};
-}
-
 SE3 inverted(const SE3& pose) { return pose.inverse(); }
 
 SE3 rotation_inverted(const SE3& pose) { return {pose.rotation.conjugate(), pose.translation}; }
@@ -31,6 +31,131 @@ SE3 rotation_inverted(const SE3& pose) { return {pose.rotation.conjugate(), pose
 SE3 scalar_first(const SE3& pose) {
   const Quaterniond& q = pose.rotation;
   return {Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
+}
+
+/// R B, t. A B that mirrors leaves no rotation; then the world is mirrored as well: W R B, W t.
+SE3 of_camera_axes(const SE3& pose, const Matrix3d& axes) {
+  const Matrix3d rotation = pose.rotation_matrix() * axes;
+  if (axes.determinant() > 0) return {Quaterniond(rotation).normalized(), pose.translation};
+  return {Quaterniond(Matrix3d(kFlip * rotation)).normalized(), kFlip * pose.translation};
+}
+
+SE3 of_position_axes(const SE3& pose, const Matrix3d& axes) {
+  return {pose.rotation, axes * pose.translation};
+}
+
+using PoseChange = std::function<SE3(const SE3&)>;
+
+std::function<void(measures::Reading&)> changing_poses(PoseChange change) {
+  return [change = std::move(change)](measures::Reading& reading) {
+    reading.pose = [before = reading.pose, change](const SE3& pose) {
+      return change(before ? before(pose) : pose);
+    };
+  };
+}
+
+void add_misreadings_of_images(std::vector<Misreading>& all) {
+  struct Mirror {
+    bool x, y;
+    const char* name;
+    const char* remedy;
+  };
+  constexpr std::array<Mirror, 3> kMirrors = {
+      Mirror{true, false, "mirrored", "mirror the colour images (left to right)"},
+      Mirror{true, true, "upside down", "rotate the colour images by 180 degrees"},
+      Mirror{false, true, "mirrored top to bottom", "mirror the colour images (top to bottom)"}};
+  for (const Mirror& mirror : kMirrors) {
+    all.push_back({"color-mirrored", fmt::format("colour {}", mirror.name),
+                   fmt::format("colour is {} against depth: turning it back", mirror.name), mirror.remedy,
+                   [mirror](measures::Reading& reading) {
+                     reading.color_mirrored_x ^= mirror.x;
+                     reading.color_mirrored_y ^= mirror.y;
+                   },
+                   false});
+  }
+  all.push_back({"depth-along-ray", "depth along the ray",
+                 "depth is the distance to the camera's centre along the ray of the pixel, not its z "
+                 "component: dividing it by sqrt(1 + x^2 + y^2)",
+                 "write z = d / sqrt(1 + x^2 + y^2) with x = (u - cx) / fx, y = (v - cy) / fy",
+                 [](measures::Reading& reading) { reading.depth_along_ray = true; }, false});
+}
+
+void add_misreadings_of_poses(std::vector<Misreading>& all) {
+  all.push_back({"truth-inverted", "inverted poses",
+                 "the poses map from the world to the camera: inverting them",
+                 "invert the poses: groundtruth.txt holds camera positions in the world",
+                 changing_poses(&inverted), false});
+  all.push_back({"truth-rotation-inverted", "inverted rotations",
+                 "the rotations map from the world to the camera: inverting them",
+                 "conjugate the quaternions (negate qx, qy, qz)", changing_poses(&rotation_inverted), false});
+  all.push_back({"truth-quaternion-order", "quaternions as w x y z",
+                 "the quaternions are in the order w x y z: reading them so",
+                 "groundtruth.txt holds qx qy qz qw", changing_poses(&scalar_first), false});
+}
+
+std::string hint_of_reflection(bool negative_focal_length) {
+  if (negative_focal_length)
+    return "images are stored top-down: use a positive fy_px and reflect the poses (F T F, F = diag(1, -1, "
+           "1))";
+  return "reflect the poses: F T F with F = diag(1, -1, 1), that is (tx, -ty, tz) and (-qx, qy, -qz, qw); "
+         "--format icl does it for ICL-NUIM";
+}
+
+std::string matrix_rows(const Matrix3d& m) {
+  return fmt::format("[{} {} {}; {} {} {}; {} {} {}]", m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2),
+                     m(2, 0), m(2, 1), m(2, 2));
+}
+
+/// What may be wrong in place of the poses: images of both cameras that were turned or mirrored together.
+std::string alternative_of_images(const Matrix3d& axes) {
+  if (axes.isApprox(Matrix3d(Vector3d(-1, 1, 1).asDiagonal())))
+    return ", or mirror the images of colour and depth (left to right)";
+  if (axes.isApprox(Matrix3d(Vector3d(-1, -1, 1).asDiagonal())))
+    return ", or rotate the images of colour and depth by 180 degrees";
+  return "";
+}
+
+/// The poses are of a camera whose axes are a signed permutation of (right, down, forward).
+void add_camera_axes(std::vector<Misreading>& all, bool negative_focal_length) {
+  constexpr std::array<std::string_view, 3> kDirections{"right", "down", "forward"};
+  constexpr std::array<std::string_view, 3> kOpposite{"left", "up", "back"};
+  for (const Matrix3d& axes : measures::signed_permutations()) {
+    // Minus the identity is a reflection of the positions.
+    if (axes.isIdentity() || (-axes).isIdentity()) continue;
+    const auto apply = changing_poses([axes](const SE3& pose) { return of_camera_axes(pose, axes); });
+    if (axes.isApprox(Matrix3d(kFlip))) {
+      all.push_back({"truth-not-reflected", "poses reflected about the x-z plane (or fy negated)",
+                     "the poses are those of a y-up camera, or fy has the wrong sign: reflecting them",
+                     hint_of_reflection(negative_focal_length), apply, false});
+      continue;
+    }
+    const std::string directions = measures::permutation_text(axes, kDirections, kOpposite);
+    const bool mirrors = axes.determinant() < 0;
+    all.push_back(
+        {"truth-camera-axes", fmt::format("camera axes {}", directions),
+         fmt::format("the poses are those of a camera whose (x, y, z) axes point {}, not (right, down, "
+                     "forward): changing them",
+                     directions),
+         fmt::format("{} B = {}{}",
+                     mirrors ? "replace R by W R B and t by W t, with W = diag(1, -1, 1) and"
+                             : "multiply each rotation from the right by",
+                     matrix_rows(axes), alternative_of_images(axes)),
+         apply});
+  }
+}
+
+/// The positions have other axes than the world of the rotations.
+void add_position_axes(std::vector<Misreading>& all) {
+  for (const Matrix3d& axes : measures::signed_permutations()) {
+    if (axes.isIdentity()) continue;
+    const std::string text = measures::permutation_text(axes, {"tx", "ty", "tz"});
+    all.push_back(
+        {"truth-position-axes", fmt::format("positions {}", text),
+         fmt::format("the positions have other axes than the rotations{}: reading (tx, ty, tz) as {}",
+                     axes.determinant() < 0 ? ", left-handed ones" : "", text),
+         fmt::format("replace the positions (tx, ty, tz) of the ground truth by {}", text),
+         changing_poses([axes](const SE3& pose) { return of_position_axes(pose, axes); })});
+  }
 }
 
 using ReadingOf = std::function<measures::Reading(double)>;
@@ -74,6 +199,24 @@ FittedParameter fit(const WarpTest& test, const measures::Reading& base, const s
   return {value, test.compare(residuals, reading_of(value))};
 }
 
+/// Mean of the logarithms of the ratios of depth and intensity residuals. A reading of colour alone leaves
+/// those of depth as they are, and is decided by intensity.
+double log_ratio(const measures::WarpResidual& other, const measures::WarpResidual& base) {
+  const double intensity =
+      std::log((other.intensity_grey + kIntensityFloor_grey) / (base.intensity_grey + kIntensityFloor_grey));
+  if (other.depth_share == base.depth_share) return intensity;
+  return 0.5 * intensity +
+         0.5 * std::log((other.depth_share + kDepthFloor) / (base.depth_share + kDepthFloor));
+}
+
+std::vector<double> row_of_shifts() {
+  constexpr int kSteps = 40;
+  constexpr double kStep_s = 0.025;
+  std::vector<double> shifts_s;
+  for (int i = -kSteps; i <= kSteps; ++i) shifts_s.push_back(kStep_s * i);
+  return shifts_s;
+}
+
 std::vector<double> geometric_row(double low, double high, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(low * std::pow(high / low, i / (count - 1.0)));
@@ -103,11 +246,7 @@ Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResid
     ++count;
     // A reading must not improve by warping most points out of view.
     const bool lost = other[i]->overlap < 0.5 * base[i]->overlap || other[i]->points < 50;
-    const double ratio =
-        lost ? std::log(kLostRatio)
-             : 0.5 * std::log((other[i]->depth_share + kDepthFloor) / (base[i]->depth_share + kDepthFloor)) +
-                   0.5 * std::log((other[i]->intensity_grey + kIntensityFloor_grey) /
-                                  (base[i]->intensity_grey + kIntensityFloor_grey));
+    const double ratio = lost ? std::log(kLostRatio) : log_ratio(*other[i], *base[i]);
     sum += ratio;
     if (ratio < 0) ++wins;
   }
@@ -115,14 +254,13 @@ Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResid
   return {std::exp(sum / count), wins / count};
 }
 
-const std::vector<Misreading>& pose_misreadings() {
-  static const std::vector<Misreading> kAll = {
-      {"truth-not-reflected", "poses reflected about the x-z plane (or fy negated)", &reflected},
-      {"truth-inverted", "inverted poses", &inverted},
-      {"truth-rotation-inverted", "inverted rotations", &rotation_inverted},
-      {"truth-quaternion-order", "quaternions as w x y z", &scalar_first},
-  };
-  return kAll;
+std::vector<Misreading> misreadings(const PinholeCamera& camera) {
+  std::vector<Misreading> all;
+  add_misreadings_of_images(all);
+  add_misreadings_of_poses(all);
+  add_camera_axes(all, camera.fy_px < 0);
+  add_position_axes(all);
+  return all;
 }
 
 FittedParameter fit_depth_scale(const WarpTest& test, const measures::Reading& base) {
@@ -141,12 +279,26 @@ FittedParameter fit_focal_scale(const WarpTest& test, const measures::Reading& b
   });
 }
 
+FittedParameter fit_image_scale(const WarpTest& test, const measures::Reading& base) {
+  return fit(test, base, geometric_row(0.2, 5, 41), [&](double value) {
+    measures::Reading reading = base;
+    reading.image_scale *= value;
+    return reading;
+  });
+}
+
 FittedParameter fit_truth_shift(const WarpTest& test, const measures::Reading& base) {
-  std::vector<double> shifts_s;
-  for (int i = -12; i <= 12; ++i) shifts_s.push_back(0.02 * i);
-  return fit(test, base, shifts_s, [&](double value) {
+  return fit(test, base, row_of_shifts(), [&](double value) {
     measures::Reading reading = base;
     reading.truth_shift_ns += std::llround(1e9 * value);
+    return reading;
+  });
+}
+
+FittedParameter fit_depth_shift(const WarpTest& test, const measures::Reading& base) {
+  return fit(test, base, row_of_shifts(), [&](double value) {
+    measures::Reading reading = base;
+    reading.depth_shift_ns += std::llround(1e9 * value);
     return reading;
   });
 }

@@ -2,6 +2,7 @@
 // warps.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace fusebench::inspection {
 
 /// How the pairs fit under one reading, compared with another.
 struct Comparison {
-  double factor = 1;  ///< geometric mean over pairs of the ratios of depth and intensity residuals
+  double factor = 1;  ///< geometric mean over pairs of the ratios of depth and intensity residuals; of
+                      ///< intensity alone where the reading leaves depth as it is
   double wins = 0;    ///< share of pairs with a ratio below 1
 };
 
@@ -36,13 +38,19 @@ class WarpTest {
   const Workers& workers_;
 };
 
-/// A discrete misreading of the poses.
+/// A discrete misreading.
 struct Misreading {
-  std::string code;  ///< of its finding
-  std::string name;
-  SE3 (*pose)(const SE3&);
+  std::string code;    ///< of its finding; several of one code are a family, of which the best is reported
+  std::string name;    ///< as rows of reports have it
+  std::string reason;  ///< what is wrong, and what corrects it: "the poses are ...: inverting them"
+  std::string hint;
+  std::function<void(measures::Reading&)> apply;
+  /// Of many alternatives one may be better by chance where the poses explain nothing: it must also be
+  /// clearly better than no motion at all.
+  bool must_beat_still = true;
 };
-[[nodiscard]] const std::vector<Misreading>& pose_misreadings();
+/// Simple ones first.
+[[nodiscard]] std::vector<Misreading> misreadings(const PinholeCamera& camera);
 
 /// A parameter that was fitted: its best value and how well it fits.
 struct FittedParameter {
@@ -53,7 +61,11 @@ struct FittedParameter {
                                               const measures::Reading& base);  ///< factor, 1/8 to 8
 [[nodiscard]] FittedParameter fit_focal_scale(const WarpTest& test,
                                               const measures::Reading& base);  ///< factor, 0.7 to 1.4
+[[nodiscard]] FittedParameter fit_image_scale(const WarpTest& test,
+                                              const measures::Reading& base);  ///< factor, 0.2 to 5
 [[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test,
-                                              const measures::Reading& base);  ///< s, up to 0.24
+                                              const measures::Reading& base);  ///< s, up to 1
+[[nodiscard]] FittedParameter fit_depth_shift(const WarpTest& test,
+                                              const measures::Reading& base);  ///< s, up to 1
 
 }  // namespace fusebench::inspection

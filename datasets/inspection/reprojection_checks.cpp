@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
@@ -24,6 +26,7 @@ constexpr double kClearFactor = 0.75;
 constexpr double kMinShareOfPairs = 0.7;
 constexpr double kCorrectionFactor = 0.88;
 constexpr int kRounds = 3;
+constexpr double kOtherImageSize = 0.1;  // logarithm: less is an error of the focal length
 // True poses leave a small part of the residuals of no motion at all; poses of something else leave about as
 // much. The test is not significant where the truth itself hardly moves: turn plus baseline over depth.
 constexpr double kStaticFactor = 1.1;
@@ -66,65 +69,94 @@ struct Improvement {
   HypothesisResult result;
   Comparison comparison;
   measures::Reading reading;
+  std::string reason = {};  ///< of a discrete misreading, with its hint
+  std::string hint = {};
+  bool must_beat_still = false;
 };
 
-Improvement improvement(std::string code, std::string name, double value, const Comparison& c,
-                        measures::Reading reading) {
-  return {{std::move(code), std::move(name), value, c.factor, c.wins}, c, std::move(reading)};
-}
+// A later alternative must be better by this factor than an earlier, simpler one.
+constexpr double kPreference = 0.97;
 
-/// The misreadings of poses and the fitted parameters, each from the reading `base`.
-std::vector<Improvement> try_all(const WarpTest& test, const measures::Reading& base) {
+/// The discrete misreadings from the reading `base`, the best one of each code.
+std::vector<Improvement> try_misreadings(const recording::Recording& recording, const WarpTest& test,
+                                         const measures::Reading& base) {
   std::vector<Improvement> result;
   const auto residuals = test.residuals(base);
-  for (const Misreading& misreading : pose_misreadings()) {
+  for (const Misreading& misreading : misreadings(recording.rig.camera)) {
     measures::Reading reading = base;
-    reading.pose = [before = base.pose, misreading](const SE3& pose) {
-      return misreading.pose(before ? before(pose) : pose);
-    };
+    misreading.apply(reading);
     const Comparison c = test.compare(residuals, reading);
-    result.push_back(improvement(misreading.code, misreading.name, 0, c, std::move(reading)));
+    Improvement tried{{misreading.code, misreading.name, 0, c.factor, c.wins},
+                      c,
+                      std::move(reading),
+                      misreading.reason,
+                      misreading.hint,
+                      misreading.must_beat_still};
+    const auto same_code = std::ranges::find_if(
+        result, [&](const Improvement& other) { return other.result.code == misreading.code; });
+    if (same_code == result.end()) {
+      result.push_back(std::move(tried));
+    } else if (c.factor < kPreference * same_code->comparison.factor) {
+      *same_code = std::move(tried);
+    }
   }
-  const FittedParameter depth = fit_depth_scale(test, base);
-  measures::Reading reading = base;
-  reading.depth_scale *= depth.value;
-  result.push_back(improvement("depth-scale", "scaled depth", depth.value, depth.comparison, reading));
-  const FittedParameter focal = fit_focal_scale(test, base);
-  reading = base;
-  reading.focal_scale *= focal.value;
-  result.push_back(
-      improvement("focal-length", "scaled focal length", focal.value, focal.comparison, reading));
-  const FittedParameter shift = fit_truth_shift(test, base);
-  reading = base;
-  reading.truth_shift_ns += std::llround(1e9 * shift.value);
-  result.push_back(improvement("truth-time-offset", "ground truth shifted in time", shift.value,
-                               shift.comparison, reading));
   return result;
+}
+
+/// The fitted parameters from the reading `base`.
+std::vector<Improvement> try_parameters(const WarpTest& test, const measures::Reading& base) {
+  std::vector<Improvement> result;
+  const auto add = [&](const char* code, const char* name, const FittedParameter& fitted,
+                       bool must_beat_still, const auto& change) {
+    measures::Reading reading = base;
+    change(reading);
+    const Comparison& c = fitted.comparison;
+    result.push_back(
+        {{code, name, fitted.value, c.factor, c.wins}, c, std::move(reading), "", "", must_beat_still});
+  };
+  using measures::Reading;
+  const FittedParameter depth = fit_depth_scale(test, base);
+  add("depth-scale", "scaled depth", depth, false, [&](Reading& r) { r.depth_scale *= depth.value; });
+  const FittedParameter focal = fit_focal_scale(test, base);
+  add("focal-length", "scaled focal length", focal, false, [&](Reading& r) { r.focal_scale *= focal.value; });
+  const FittedParameter image = fit_image_scale(test, base);
+  add("image-size", "scaled intrinsics", image, false, [&](Reading& r) { r.image_scale *= image.value; });
+  const FittedParameter truth = fit_truth_shift(test, base);
+  add("truth-time-offset", "ground truth shifted in time", truth, true,
+      [&](Reading& r) { r.truth_shift_ns += std::llround(1e9 * truth.value); });
+  const FittedParameter delay = fit_depth_shift(test, base);
+  add("depth-time-offset", "depth shifted in time", delay, true,
+      [&](Reading& r) { r.depth_shift_ns += std::llround(1e9 * delay.value); });
+  return result;
+}
+
+std::string image_size_text(double factor, const PinholeCamera& camera) {
+  return fmt::format("{:.0f}x{:.0f}", camera.width_px / factor, camera.height_px / factor);
+}
+
+Finding finding_of_time(const std::string& code, double value_s, double frame_s, const std::string& better) {
+  if (code == "depth-time-offset")
+    return {
+        code, Severity::error,
+        fmt::format("depth images were taken {:.0f} ms {} than their stamps and delay_s say: shifting them "
+                    "{}",
+                    1e3 * std::abs(value_s), value_s > 0 ? "later" : "earlier", better),
+        fmt::format("add {:+.3f} to delay_s in [depth] of calibration.toml, or correct the stamps of depth",
+                    value_s)};
+  const bool row = std::abs(std::abs(value_s / frame_s) - 1) < 0.15;
+  return {code, Severity::error,
+          fmt::format("the ground truth's stamps are {:.1f} ms {} than the images'{}: shifting them {}",
+                      1e3 * std::abs(value_s), value_s > 0 ? "later" : "earlier", row ? ", one frame" : "",
+                      better),
+          row ? "match poses to images by their index, not by the number of the row"
+              : fmt::format("add {:+.4f} s to the stamps of the ground truth", -value_s)};
 }
 
 Finding finding_of(const Improvement& found, const recording::Recording& recording, double frame_s) {
   const double value = found.result.value;
   const std::string better = better_text(found.comparison);
   Finding f{found.result.code, Severity::error, "", ""};
-  if (f.code == "truth-not-reflected") {
-    const bool negative = recording.rig.camera.fy_px < 0;
-    f.message = fmt::format(
-        "the poses are those of a y-up camera, or fy has the wrong sign: reflecting them {}", better);
-    f.hint = negative ? "images are stored top-down: use a positive fy_px and reflect the poses (F T F, F = "
-                        "diag(1, -1, 1))"
-                      : "reflect the poses: F T F with F = diag(1, -1, 1), that is (tx, -ty, tz) and (-qx, "
-                        "qy, -qz, qw); "
-                        "--format icl does it for ICL-NUIM";
-  } else if (f.code == "truth-inverted") {
-    f.message = fmt::format("the poses map from the world to the camera: inverting them {}", better);
-    f.hint = "invert the poses: groundtruth.txt holds camera positions in the world";
-  } else if (f.code == "truth-rotation-inverted") {
-    f.message = fmt::format("the rotations map from the world to the camera: inverting them {}", better);
-    f.hint = "conjugate the quaternions (negate qx, qy, qz)";
-  } else if (f.code == "truth-quaternion-order") {
-    f.message = fmt::format("the quaternions are in the order w x y z: reading them so {}", better);
-    f.hint = "groundtruth.txt holds qx qy qz qw";
-  } else if (f.code == "depth-scale") {
+  if (f.code == "depth-scale") {
     f.message = fmt::format("depth is {:.3f} times too {}: scaling it by {:.3f} {}",
                             value < 1 ? 1 / value : value, value < 1 ? "large" : "small", value, better);
     f.hint = fmt::format(
@@ -133,14 +165,18 @@ Finding finding_of(const Improvement& found, const recording::Recording& recordi
     f.message = fmt::format("the focal length is {:.3f} of the true one: scaling fx and fy by {:.3f} {}",
                             1 / value, value, better);
     f.hint = "check fx_px and fy_px, and the size of the images for which they were calibrated";
+  } else if (f.code == "image-size") {
+    f.message = fmt::format(
+        "the intrinsics are those of images of about {} pixels, and the images have {}: scaling "
+        "fx, fy, cx and cy by {:.3f} {}",
+        image_size_text(value, recording.rig.camera), image_size_text(1, recording.rig.camera), value,
+        better);
+    f.hint = fmt::format("multiply fx_px, fy_px, cx_px and cy_px by {:.4g}", value);
+  } else if (found.reason.empty()) {
+    return finding_of_time(f.code, value, frame_s, better);
   } else {
-    const double frames = value / frame_s;
-    const bool row = std::abs(std::abs(frames) - 1) < 0.15;
-    f.message =
-        fmt::format("the ground truth's stamps are {:.1f} ms {} than the images'{}: shifting them {}",
-                    1e3 * std::abs(value), value > 0 ? "later" : "earlier", row ? ", one frame" : "", better);
-    f.hint = row ? "match poses to images by their index, not by the number of the row"
-                 : fmt::format("add {:+.4f} s to the stamps of the ground truth", -value);
+    f.message = found.reason + " " + better;
+    f.hint = found.hint;
   }
   return f;
 }
@@ -156,6 +192,16 @@ std::optional<Severity> severity_of(const Improvement& found, double frame_s) {
     if (off > 0.02 && clear(found.comparison, kCorrectionFactor)) return Severity::warning;
     return std::nullopt;
   }
+  if (code == "image-size") {
+    if (std::abs(std::log(value)) > kOtherImageSize && clear(found.comparison, kClearFactor))
+      return Severity::error;
+    return std::nullopt;
+  }
+  // Smaller delays are measured before a run.
+  if (code == "depth-time-offset") {
+    if (std::abs(value) > frame_s && clear(found.comparison, kClearFactor)) return Severity::error;
+    return std::nullopt;
+  }
   if (code == "truth-time-offset") {
     const double off_s = std::abs(value);
     if (off_s > std::min(0.015, 0.5 * frame_s) && clear(found.comparison, kClearFactor))
@@ -167,20 +213,30 @@ std::optional<Severity> severity_of(const Improvement& found, double frame_s) {
   return std::nullopt;
 }
 
+/// Whether the poses of a reading explain the images clearly better than no motion at all.
+bool beats_still(const WarpTest& test, const measures::Reading& reading) {
+  measures::Reading still = reading;
+  still.pose = [](const SE3&) { return SE3{}; };
+  return clear(test.compare(test.residuals(still), reading), kClearFactor);
+}
+
 /// The best explanation first; then, with it, the next one: several faults may be there at once.
 void search_misreadings(const recording::Recording& recording, const WarpTest& test,
                         ReprojectionMeasurement& measured, Inspection& out) {
   const double frame_s = std::max(1e-3, out.color_stamps.median_interval_s);
   measures::Reading reading;
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Improvement> tried = try_all(test, reading);
+    std::vector<Improvement> tried = try_misreadings(recording, test, reading);
+    std::ranges::move(try_parameters(test, reading), std::back_inserter(tried));
     if (round == 0) {
       for (const Improvement& t : tried) measured.hypotheses.push_back(t.result);
     }
     const Improvement* best = nullptr;
     for (const Improvement& t : tried) {
       if (!severity_of(t, frame_s) || out.has(t.result.code)) continue;
-      if (best == nullptr || t.comparison.factor < best->comparison.factor) best = &t;
+      if (best != nullptr && t.comparison.factor >= kPreference * best->comparison.factor) continue;
+      if (t.must_beat_still && !beats_still(test, t.reading)) continue;
+      best = &t;
     }
     if (best == nullptr) return;
     const Finding finding = finding_of(*best, recording, frame_s);
@@ -193,7 +249,8 @@ void search_misreadings(const recording::Recording& recording, const WarpTest& t
 bool inconsistency_is_explained(const Inspection& out) {
   return std::ranges::any_of(out.findings, [](const Finding& f) {
     return f.severity == Severity::error &&
-           (f.code.starts_with("truth-") || f.code == "depth-scale" || f.code == "focal-length");
+           (f.code.starts_with("truth-") || f.code == "depth-scale" || f.code == "depth-along-ray" ||
+            f.code == "depth-time-offset" || f.code == "focal-length" || f.code == "image-size");
   });
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <tuple>
@@ -29,10 +30,16 @@ using inspection::Severity;
 
 constexpr std::array<std::string_view, 5> kOfImu = {"imu-", "gyroscope-", "accelerometer-", "gravity-",
                                                     "extrinsic-"};
-constexpr std::array<std::string_view, 2> kOfDepth = {"depth-misregistered", "depth-range"};
-constexpr std::array<std::string_view, 6> kInvalidating = {
-    "gyroscope-unit",     "accelerometer-unit", "accelerometer-without-gravity",
-    "accelerometer-sign", "imu-axes-swapped",   "imu-unrelated"};
+constexpr std::array<std::string_view, 8> kOfImages = {
+    "color-mirrored", "depth-along-ray", "depth-time-offset", "depth-misregistered",
+    "depth-range",    "depth-scale",     "focal-length",      "image-size"};
+/// A run can do nothing about these, but what it measures by such a ground truth means nothing.
+constexpr std::array<std::string_view, 8> kOfTruth = {
+    "truth-not-reflected", "truth-inverted",      "truth-rotation-inverted", "truth-quaternion-order",
+    "truth-camera-axes",   "truth-position-axes", "truth-constant",          "truth-inconsistent"};
+constexpr std::array<std::string_view, 8> kInvalidating = {
+    "gyroscope-unit",     "gyroscope-axes",     "accelerometer-unit", "accelerometer-without-gravity",
+    "accelerometer-sign", "accelerometer-axes", "imu-axes-swapped",   "imu-unrelated"};
 
 constexpr double kKnownOffset_s = kLeastTimeOffset_s / 3;  // standard deviation: less is told apart from none
 
@@ -55,7 +62,8 @@ std::string_view extension_of(recording::ImuSource source) {
 
 bool is_of_sensors(const Finding& finding, bool with_imu) {
   if (finding.severity == Severity::note) return false;
-  if (std::ranges::find(kOfDepth, finding.code) != kOfDepth.end()) return true;
+  if (std::ranges::find(kOfImages, finding.code) != kOfImages.end()) return true;
+  if (std::ranges::find(kOfTruth, finding.code) != kOfTruth.end()) return finding.severity == Severity::error;
   return with_imu &&
          std::ranges::any_of(kOfImu, [&](std::string_view of) { return finding.code.starts_with(of); });
 }
@@ -159,6 +167,18 @@ void take_out_time_offset(recording::Recording& recording, double imu_time_offse
       fmt::format("{}stamps of the IMU {:+.1f} ms against those of the images, measured in the recording and "
                   "taken out of its samples",
                   kPreparedNote, 1e3 * imu_time_offset_s));
+}
+
+std::optional<Error> refusal(const SensorCheck& check, const std::string& recording) {
+  std::string messages, hints;
+  for (const Finding& finding : check.findings) {
+    if (!makes_results_invalid(finding)) continue;
+    messages += fmt::format("{}{}", messages.empty() ? "" : "; ", finding.message);
+    hints += fmt::format("{}{}", hints.empty() || finding.hint.empty() ? "" : "; ", finding.hint);
+  }
+  if (messages.empty()) return std::nullopt;
+  return Error{ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", recording, messages),
+               fmt::format("{}{}--prepare off runs all the same", hints, hints.empty() ? "" : "; ")};
 }
 
 bool makes_results_invalid(const Finding& finding) {

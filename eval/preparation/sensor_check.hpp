@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
 #include "datasets/inspection/finding.hpp"
 #include "datasets/recording/recording.hpp"
@@ -13,7 +15,8 @@
 namespace fusebench::preparation {
 
 struct SensorCheck {
-  /// Errors and warnings of `fusebench inspect` about the depth camera, and about recorded inertial samples.
+  /// Errors and warnings of `fusebench inspect` about the cameras and about recorded inertial samples, and
+  /// its errors about the poses of the ground truth.
   std::vector<inspection::Finding> findings;
   /// Of a recorded IMU: at rest, or else by the turns of the camera in the images; nothing where neither
   /// makes it observable.
@@ -35,6 +38,10 @@ struct SensorCheck {
 /// Whether no result of such samples means anything: another unit, gravity that is missing, axes that are
 /// exchanged, or the IMU of another recording.
 [[nodiscard]] bool makes_results_invalid(const inspection::Finding& finding);
+
+/// All findings that make results invalid as one error (data_corrupt), with what to do; nothing if there are
+/// none.
+[[nodiscard]] std::optional<Error> refusal(const SensorCheck& check, const std::string& recording);
 
 /// Takes the bias out of the samples and the true states, with a note, if it is larger than kLeastBias_radps:
 /// the filter expects one of 0.005 rad/s (initialisation.gyroscope_bias_sigma_radps) and would take longer to

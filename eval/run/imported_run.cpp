@@ -16,6 +16,7 @@
 #include "eval/external/system_name.hpp"
 #include "eval/external/system_trajectory.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
@@ -132,6 +133,8 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   if (auto first = check_first_of_its_name(run); !first) return tl::unexpected(first.error());
   describe_foreign_output(output, *recording, record);
   record.metrics = metrics_of(output, *recording, config::EffectiveConfig{}.values(), Workers(spec.threads));
+  record::note_contradiction(record, record::true_trajectory(*recording, record::frame_stamps(*recording)),
+                             output.trajectory);
   record.provenance = record::provenance_here(spec.threads);
   if (auto written = write(run, output, record::evaluated_truth_text(*recording)); !written)
     return tl::unexpected(written.error());

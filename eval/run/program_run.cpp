@@ -10,6 +10,8 @@
 #include "core/io/staged_folder.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/external/program_results.hpp"
+#include "eval/record/record_origin.hpp"
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
@@ -67,6 +69,8 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   record.reason = results->reason;
   describe_foreign_output(output, recording, record);
   record.metrics = metrics_of(output, recording, run.spec.config.values(), Workers(run.spec.threads));
+  record::note_contradiction(record, record::true_trajectory(recording, record::frame_stamps(recording)),
+                             output.trajectory);
   record.timing = program_timing(*results, total);
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   const std::array<NamedText, 3> texts = {{{"trajectory.tum", trajectory::tum_text(output.trajectory)},

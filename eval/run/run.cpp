@@ -23,6 +23,7 @@
 #include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/run/loop_results.hpp"
 #include "eval/run/program_run.hpp"
 #include "eval/run/revised_poses.hpp"
@@ -110,13 +111,10 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
-  for (const inspection::Finding& finding : checked.findings) {
-    if (preparation::makes_results_invalid(finding))
-      return fail(
-          ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", run.recording.name, finding.message),
-          fmt::format("{}{}--prepare off runs all the same", finding.hint, finding.hint.empty() ? "" : "; "));
+  if (auto refused = preparation::refusal(checked, run.recording.name))
+    return tl::unexpected(*std::move(refused));
+  for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
-  }
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
   if (checked.imu_time_offset_s) preparation::take_out_time_offset(run.recording, *checked.imu_time_offset_s);
   return {};
@@ -184,6 +182,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl
     record.final_metrics = metrics_of(output, run.recording, config, workers);
     record.metrics.mesh = record.final_metrics->mesh;  // the model is of these poses
   }
+  record::note_contradiction(record, truth, progress->output.trajectory);
   record.loops = loops.error;
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
@@ -195,6 +194,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl
   progress->log += loops.log;
   log_silent_failures(record, *progress);
   if (const auto note = record::clock_note(record)) progress->log += *note + "\n";
+  if (const auto note = record::noted_contradiction(record)) progress->log += *note + "\n";
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   if (const std::string segments = record::segments_text(record.frames); !segments.empty())

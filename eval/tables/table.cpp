@@ -14,6 +14,7 @@
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_set.hpp"
@@ -231,6 +232,8 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
     row.members = groups[i];
     if (row.members.size() > 1) add_replicates(runs, row);
     if (const auto note = record::clock_note(first.record))
+      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
+    if (const auto note = record::noted_contradiction(first.record))
       table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
     if (row.status != record::RunStatus::ok)
       table.notes.push_back(

@@ -6,6 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 #include <optional>
+#include <utility>
+
+#include "datasets/inspection/measures/order_statistics.hpp"
 
 namespace fusebench::inspection::measures {
 
@@ -43,15 +46,25 @@ struct Tracks {
   std::vector<cv::Point2f> pixels_to;
 };
 
-Tracks track_corners(const RgbdFrame& from, const RgbdFrame& to, const PinholeCamera& camera) {
+/// Corners of an image and where they are in the other one, if they are found.
+struct FollowedCorners {
   std::vector<cv::Point2f> corners, moved;
-  cv::goodFeaturesToTrack(view_of(from.grey), corners, kCorners, 0.01, 8);
-  Tracks tracks;
-  if (corners.empty()) return tracks;
   std::vector<std::uint8_t> found;
+};
+
+FollowedCorners follow_corners(const GreyImage& from, const GreyImage& to) {
+  FollowedCorners followed;
+  cv::goodFeaturesToTrack(view_of(from), followed.corners, kCorners, 0.01, 8);
+  if (followed.corners.empty()) return followed;
   std::vector<float> error;
-  cv::calcOpticalFlowPyrLK(view_of(from.grey), view_of(to.grey), corners, moved, found, error,
-                           cv::Size(21, 21), 4);
+  cv::calcOpticalFlowPyrLK(view_of(from), view_of(to), followed.corners, followed.moved, followed.found,
+                           error, cv::Size(21, 21), 4);
+  return followed;
+}
+
+Tracks track_corners(const RgbdFrame& from, const RgbdFrame& to, const PinholeCamera& camera) {
+  const auto [corners, moved, found] = follow_corners(from.grey, to.grey);
+  Tracks tracks;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const int x = cvRound(corners[i].x), y = cvRound(corners[i].y);
     if (found[i] == 0 || !lies_on_surface(from.depth_m, x, y)) continue;
@@ -144,6 +157,18 @@ std::vector<CameraTurn> turns_of_run(const recording::Recording& recording, std:
 }
 
 }  // namespace
+
+std::optional<double> image_motion_px(const GreyImage& from, const GreyImage& to) {
+  const auto [corners, moved, found] = follow_corners(from, to);
+  std::vector<double> motion_px;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (found[i] != 0)
+      motion_px.push_back(
+          static_cast<double>(std::hypot(moved[i].x - corners[i].x, moved[i].y - corners[i].y)));
+  }
+  if (motion_px.size() < static_cast<std::size_t>(kMinInliers)) return std::nullopt;
+  return median(std::move(motion_px));
+}
 
 CameraTurns turns_from_truth(const recording::Recording& recording) {
   CameraTurns result{"ground truth", {}};

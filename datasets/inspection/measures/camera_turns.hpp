@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,5 +33,9 @@ struct CameraTurns {
 /// RANSAC (OpenCV). Needs an IMU (for the choice of frames).
 [[nodiscard]] CameraTurns turns_from_images(const recording::Recording& recording, const Workers& workers,
                                             std::size_t count);
+
+/// Median distance (px) that corners of an image move to the other one; nothing if fewer than 40 are
+/// followed.
+[[nodiscard]] std::optional<double> image_motion_px(const GreyImage& from, const GreyImage& to);
 
 }  // namespace fusebench::inspection::measures

@@ -44,6 +44,31 @@ std::optional<Vector2d> pixel_of(const PinholeCamera& camera, const Vector3d& po
   return pixel;
 }
 
+PinholeCamera camera_of(const PinholeCamera& given, const Reading& reading) {
+  PinholeCamera camera = given;
+  camera.fx_px *= reading.focal_scale * reading.image_scale;
+  camera.fy_px *= reading.focal_scale * reading.image_scale;
+  // The image begins at (-0.5, -0.5).
+  camera.cx_px += (reading.image_scale - 1) * (given.cx_px + 0.5);
+  camera.cy_px += (reading.image_scale - 1) * (given.cy_px + 0.5);
+  return camera;
+}
+
+/// z of a measured depth.
+double z_of(double depth_m, double x_px, double y_px, const PinholeCamera& camera, const Reading& reading) {
+  const double scaled_m = reading.depth_scale * depth_m;
+  if (!reading.depth_along_ray) return scaled_m;
+  const double x = (x_px - camera.cx_px) / camera.fx_px, y = (y_px - camera.cy_px) / camera.fy_px;
+  return scaled_m / std::sqrt(1 + x * x + y * y);
+}
+
+/// Grey level of the scene at a pixel of the camera.
+double grey_at(const GreyImage& grey, const Vector2d& pixel, const Reading& reading) {
+  const double x = reading.color_mirrored_x ? grey.width - 1 - pixel.x() : pixel.x();
+  const double y = reading.color_mirrored_y ? grey.height - 1 - pixel.y() : pixel.y();
+  return sample_bilinear(grey, x, y).value;
+}
+
 struct PairPoses {
   SE3 T_depth2_depth1;
   SE3 T_color1_depth1;
@@ -52,9 +77,9 @@ struct PairPoses {
 
 std::optional<PairPoses> poses_of(const WarpPair& pair, const Trajectory& truth, std::int64_t gap_ns,
                                   const Reading& reading) {
-  const auto depth1 = pose_at(truth, pair.from_depth_ns, gap_ns, reading);
+  const auto depth1 = pose_at(truth, pair.from_depth_ns + reading.depth_shift_ns, gap_ns, reading);
   const auto color1 = pose_at(truth, pair.from_color_ns, gap_ns, reading);
-  const auto depth2 = pose_at(truth, pair.to_depth_ns, gap_ns, reading);
+  const auto depth2 = pose_at(truth, pair.to_depth_ns + reading.depth_shift_ns, gap_ns, reading);
   const auto color2 = pose_at(truth, pair.to_color_ns, gap_ns, reading);
   if (!depth1 || !color1 || !depth2 || !color2) return std::nullopt;
   return PairPoses{depth2->inverse() * *depth1, color1->inverse() * *depth1, color2->inverse() * *depth1};
@@ -89,19 +114,19 @@ std::optional<WarpResidual> warp(const WarpPair& pair, const PinholeCamera& give
                                  std::int64_t truth_gap_ns, const Reading& reading) {
   const auto poses = poses_of(pair, truth, truth_gap_ns, reading);
   if (!poses) return std::nullopt;
-  PinholeCamera camera = given;
-  camera.fx_px *= reading.focal_scale;
-  camera.fy_px *= reading.focal_scale;
+  const PinholeCamera camera = camera_of(given, reading);
   std::vector<double> depth_m, depth_share, intensity;
   for (const MeasuredPoint& point : pair.points) {
-    const Vector3d point1 = camera.back_project(point.x_px, point.y_px, reading.depth_scale * point.depth_m);
+    const double z1_m = z_of(point.depth_m, point.x_px, point.y_px, camera, reading);
+    const Vector3d point1 = camera.back_project(point.x_px, point.y_px, z1_m);
     const Vector3d point2 = poses->T_depth2_depth1 * point1;
     const auto pixel = pixel_of(camera, point2);
     if (pixel) {
-      const float z_m = pair.to_depth_m(static_cast<int>(std::lround(pixel->x())),
-                                        static_cast<int>(std::lround(pixel->y())));
-      if (z_m > 0) {
-        const double difference_m = std::abs(reading.depth_scale * static_cast<double>(z_m) - point2.z());
+      const auto x = static_cast<int>(std::lround(pixel->x()));
+      const auto y = static_cast<int>(std::lround(pixel->y()));
+      const auto measured_m = static_cast<double>(pair.to_depth_m(x, y));
+      if (measured_m > 0) {
+        const double difference_m = std::abs(z_of(measured_m, x, y, camera, reading) - point2.z());
         depth_m.push_back(difference_m);
         depth_share.push_back(difference_m / point2.z());
       }
@@ -109,8 +134,8 @@ std::optional<WarpResidual> warp(const WarpPair& pair, const PinholeCamera& give
     const auto color1 = pixel_of(camera, poses->T_color1_depth1 * point1);
     const auto color2 = pixel_of(camera, poses->T_color2_depth1 * point1);
     if (color1 && color2) {
-      intensity.push_back(sample_bilinear(pair.to_grey, color2->x(), color2->y()).value -
-                          sample_bilinear(pair.from_grey, color1->x(), color1->y()).value);
+      intensity.push_back(grey_at(pair.to_grey, *color2, reading) -
+                          grey_at(pair.from_grey, *color1, reading));
     }
   }
   WarpResidual result;

@@ -36,7 +36,7 @@ struct Fit {
   double weights = 0;
   Matrix3d rotation = Matrix3d::Identity();
   Vector3d bias_radps = Vector3d::Zero();
-  Eigen::Vector3d singular_values = Eigen::Vector3d::Zero();
+  Matrix3d cross = Matrix3d::Zero();
   double scale = 1;
 };
 
@@ -85,15 +85,14 @@ Fit fit_at(const Sums& s, bool mirrored) {
   Fit fit;
   fit.weights = s.weights;
   if (s.dt <= 0) return fit;
-  const Matrix3d cross = s.cross - s.gyroscope_dt * s.camera_dt.transpose() / s.dt;
+  fit.cross = s.cross - s.gyroscope_dt * s.camera_dt.transpose() / s.dt;
   fit.total = s.gyroscope - s.gyroscope_dt.squaredNorm() / s.dt;
   fit.camera = s.camera - s.camera_dt.squaredNorm() / s.dt;
-  const Eigen::JacobiSVD<Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Matrix3d> svd(fit.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() * (mirrored ? -1.0 : 1.0);
   const Vector3d signs(1, 1, sign > 0 ? 1.0 : -1.0);
   fit.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  fit.singular_values = svd.singularValues().cwiseProduct(signs);
-  const double agreement = fit.singular_values.sum();
+  const double agreement = svd.singularValues().cwiseProduct(signs).sum();
   fit.scale = fit.camera > 0 ? agreement / fit.camera : 1;
   fit.cost = fit.total - (fit.camera > 0 ? agreement * agreement / fit.camera : 0);
   if (agreement <= 0) fit.cost = fit.total;
@@ -255,6 +254,11 @@ Matrix8d covariance(const std::vector<Interval>& intervals, const GyroscopeInteg
 
 }  // namespace
 
+double TurnAlignment::cost_of(const Matrix3d& other_rotation_imu_camera) const {
+  const double agreement = std::max(0.0, other_rotation_imu_camera.cwiseProduct(cross_rad2).sum());
+  return camera_rad2 > 0 ? imu_rad2 - agreement * agreement / camera_rad2 : imu_rad2;
+}
+
 std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const GyroscopeIntegral& gyroscope) {
   std::vector<Interval> intervals = intervals_of(turns, gyroscope);
   TurnAlignment result;
@@ -294,6 +298,10 @@ std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const Gyrosco
   result.bias_radps = fit.bias_radps;
   result.residual_radps = std::sqrt(std::max(0.0, fit.cost) / std::max(1.0, fit.weights)) / dt_s;
   result.explained = fit.total > 0 ? 1 - fit.cost / fit.total : 0;
+  result.cross_rad2 = fit.cross;
+  result.imu_rad2 = fit.total;
+  result.camera_rad2 = fit.camera;
+  result.freedom = freedom;
   return result;
 }
 

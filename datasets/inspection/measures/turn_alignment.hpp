@@ -23,6 +23,15 @@ struct TurnAlignment {
   double residual_radps = 0;  ///< rms, all axes
   double explained = 0;       ///< share of the variance of the gyroscope's rates
   double camera_rms_radps = 0;
+  // Weighted sums over the intervals at the offset found, without their parts that are proportional to the
+  // duration, which the bias explains.
+  Matrix3d cross_rad2 = Matrix3d::Zero();  ///< sum of turn_imu turn_camera^T
+  double imu_rad2 = 0;                     ///< sum of |turn_imu|^2
+  double camera_rad2 = 0;                  ///< sum of |turn_camera|^2
+  double freedom = 1;                      ///< of the residuals
+
+  /// Sum of squared residuals with another rotation, at its best scale (not below 0) and bias.
+  [[nodiscard]] double cost_of(const Matrix3d& other_rotation_imu_camera) const;
 };
 
 /// Searches offsets within +-0.5 s; one within 0.01 s of an end counts as not found. Nothing if fewer than 8

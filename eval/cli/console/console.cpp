@@ -10,7 +10,9 @@
 #include <csignal>
 #include <cstdio>
 
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/text/control_characters.hpp"
+#include "eval/text/text_layout.hpp"
 
 namespace fusebench::cli::console {
 
@@ -88,6 +90,8 @@ void ProgressBar::clear() {
 
 std::string summary_line(const record::RunRecord& record) {
   std::string line;
+  if (const auto contradiction = record::noted_contradiction(record))
+    line += fmt::format("{}, but {}; ", record::to_string(record.status), *contradiction);
   if (const auto& aie = record.metrics.aie.value) line += fmt::format("AIE {:.3f}, ", aie->all.aie_grey);
   if (const auto& ate = record.metrics.ate.value) {
     line += fmt::format("ATE {:.2f} cm", 100 * ate->stats.rmse);

@@ -18,6 +18,7 @@
 #include "eval/external/system_name.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/record/truth_contradiction.hpp"
 #include "eval/run/run.hpp"
 #include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_names.hpp"
@@ -168,7 +169,9 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   // What opening it has not said: what was measured in the recording and found of its IMU.
   const std::vector<std::string> said = record::reading_notes(prepared.recording, prepared.spec.recording);
   for (const std::string& note : record->recording.notes) {
-    if (std::ranges::find(said, note) == said.end()) console::print_progress(note);
+    // The status line has a contradiction.
+    if (std::ranges::find(said, note) == said.end() && !record::is_contradiction(note))
+      console::print_progress(note);
   }
 
   const std::string ending = record->status == record::RunStatus::ok
