@@ -1,8 +1,10 @@
 // Stamps of trajectories, as integers and as the doubles that scripts compare.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/base/types.hpp"
@@ -17,8 +19,21 @@ namespace fusebench::trajectory_files {
   return stamps;
 }
 
+/// Rounded to the nearest. What 64 bits do not hold, infinity included, becomes the nearest that they hold.
 [[nodiscard]] inline std::int64_t nanoseconds(double seconds) {
-  return static_cast<std::int64_t>(std::llround(seconds * 1e9));
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const double wanted = seconds * 1e9;
+  if (wanted >= static_cast<double>(kMost)) return kMost;
+  if (wanted <= -static_cast<double>(kMost)) return -kMost;
+  return std::llround(wanted);
+}
+
+/// a + b, at most +-(2^63 - 1), so that it has a negative.
+[[nodiscard]] inline std::int64_t clamped_sum(std::int64_t a, std::int64_t b) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::int64_t sum = 0;
+  if (!__builtin_add_overflow(a, b, &sum)) return std::max(sum, -kMost);
+  return b > 0 ? kMost : -kMost;
 }
 
 /// The double nearest to the decimal stamp, as if its text had been read. At today's epochs that is a grid of
