@@ -13,23 +13,23 @@ using namespace trajectory_files;
 
 namespace {
 
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMost_ns = std::numeric_limits<std::int64_t>::max();
 
 TEST(Stamps, SecondsThatNanosecondsDoNotHoldAreClamped) {
   EXPECT_EQ(nanoseconds(0.02), 20'000'000);
   EXPECT_EQ(nanoseconds(-0.02), -20'000'000);
   for (const double seconds : {9.3e9, 1e10, 1e300, std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(nanoseconds(seconds), kMost) << seconds;
-    EXPECT_EQ(nanoseconds(-seconds), -kMost) << seconds;
+    EXPECT_EQ(nanoseconds(seconds), kMost_ns) << seconds;
+    EXPECT_EQ(nanoseconds(-seconds), -kMost_ns) << seconds;
   }
   EXPECT_GT(nanoseconds(9.2e9), 9'100'000'000'000'000'000);
 }
 
 TEST(Stamps, SumsAreClamped) {
   EXPECT_EQ(clamped_sum(3, -5), -2);
-  EXPECT_EQ(clamped_sum(kMost, 1), kMost);
-  EXPECT_EQ(clamped_sum(kMost, -1), kMost - 1);
-  EXPECT_EQ(clamped_sum(std::numeric_limits<std::int64_t>::min(), -1), -kMost);
+  EXPECT_EQ(clamped_sum(kMost_ns, 1), kMost_ns);
+  EXPECT_EQ(clamped_sum(kMost_ns, -1), kMost_ns - 1);
+  EXPECT_EQ(clamped_sum(std::numeric_limits<std::int64_t>::min(), -1), -kMost_ns);
 }
 
 TEST(Stamps, ALimitThatDoesNotFitIsNoLimit) {
