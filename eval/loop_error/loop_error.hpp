@@ -9,8 +9,8 @@
 
 namespace fusebench::loop_error {
 
-/// truth: of the camera, at the stamps of the frames; places in its gaps are left out. Errors: data_corrupt
-/// (positions that cannot be aligned), and those of LoopClosure::poses_with().
+/// truth: of the camera, at the stamps of the frames; places in its gaps are left out. Errors: those of
+/// LoopClosure::poses_with().
 [[nodiscard]] Result<LoopError> loop_error(const loops::LoopClosure& closure, const Trajectory& truth,
                                            const PinholeCamera& camera, const config::DepthConfig& depth,
                                            const config::LoopsConfig& loops);

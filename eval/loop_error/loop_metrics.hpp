@@ -38,7 +38,7 @@ struct LoopError {
   double nees_rotation = 0;  ///< mean by degree of freedom: 1 is consistent
   double nees_position = 0;
   /// ATE of the final poses with a true loop at every revisit in place of those that were found; nothing if
-  /// there is no revisit.
+  /// there is no revisit, or if positions cannot be aligned (a camera that does not move).
   std::optional<double> oracle_ate_m;
 };
 

@@ -81,7 +81,7 @@ SurfregScore surfreg_score(std::span<const Vector3d> vertices_truth, const Verte
   for (int step = 0; step < kSteps; ++step) {
     const auto closer = trajectory_error::align_positions(matches.nearest, moved, /*with_scale=*/false);
     if (!closer) return score;
-    for (Vector3d& point : moved) point = closer->rigid * point;
+    for (Vector3d& point : moved) point = *closer * point;
     matches = match(moved, truth, workers);
   }
   score.after_icp_m = matches.mean_m;

@@ -38,7 +38,7 @@ std::string association_text(const trajectory_error::TrajectoryEvaluation& e) {
   const trajectory_files::AssociationOptions& a = e.request.association;
   std::string how;
   if (pairs_of_tum(e.request))
-    return fmt::format("nearest reference pose within {:.6g} s (twice its median interval)",
+    return fmt::format("nearest reference pose within {:.6g} s (at most twice its median interval)",
                        a.max_difference_s);
   switch (a.rule) {
     case trajectory_files::AssociationRule::nearest:

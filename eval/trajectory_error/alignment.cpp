@@ -11,19 +11,16 @@
 #include <vector>
 
 #include "core/base/solvers.hpp"
+#include "eval/trajectory_files/coordinate_rounding.hpp"
 
 namespace fusebench::trajectory_error {
 
 namespace {
 
-// Relative, because an absolute limit lets long oblique lines pass through rounding.
+// Of the largest singular value: an absolute limit alone lets long oblique lines pass through rounding.
 constexpr double kRankTolerance = 1e-9;
-
-Vector3d centroid(std::span<const Vector3d> points) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Vector3d& point : points) sum += point;
-  return sum / static_cast<double>(points.size());
-}
+// A motion is observable if it is more than so many times what rounding can give.
+constexpr double kRoundings = 2;
 
 std::vector<Vector3d> positions_of(std::span<const SE3> poses) {
   std::vector<Vector3d> positions;
@@ -32,50 +29,146 @@ std::vector<Vector3d> positions_of(std::span<const SE3> poses) {
   return positions;
 }
 
-tl::unexpected<Error> undetermined(const std::string& why, std::string_view remedy = "take more frames") {
-  return fail(ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
-              fmt::format("{}: alignment of positions needs three that are not on one line; `fusebench eval "
-                          "ape` with --align origin or none needs one",
-                          remedy));
+/// Positions of one side: first + mean + offset.
+struct Side {
+  std::string_view name;
+  Vector3d first;
+  Vector3d mean;  ///< of the differences from the first
+  std::vector<Vector3d> offsets;
+  double rounding = 0;  ///< see coordinate_rounding()
+
+  Side(std::string_view whose, std::span<const Vector3d> positions)
+      : name(whose), first(positions[0]), rounding(trajectory_files::coordinate_rounding(positions)) {
+    // Sums of differences, so that equal positions have offsets of exactly zero.
+    Vector3d sum = Vector3d::Zero();
+    for (const Vector3d& position : positions) sum += position - first;
+    mean = sum / static_cast<double>(positions.size());
+    offsets.reserve(positions.size());
+    for (const Vector3d& position : positions) offsets.push_back((position - first) - mean);
+  }
+
+  [[nodiscard]] double count() const { return static_cast<double>(offsets.size()); }
+  [[nodiscard]] double sum_of_squares() const {
+    double sum = 0;
+    for (const Vector3d& offset : offsets) sum += offset.squaredNorm();
+    return sum;
+  }
+  /// Root mean square of the offsets along directions (columns, orthonormal).
+  template <typename Directions>
+  [[nodiscard]] double spread(const Directions& directions) const {
+    double sum = 0;
+    for (const Vector3d& offset : offsets) sum += (directions.transpose() * offset).squaredNorm();
+    return std::sqrt(sum / count());
+  }
+  /// Whether the offsets along directions can be rounding alone.
+  template <typename Directions>
+  [[nodiscard]] bool is_still(const Directions& directions) const {
+    return spread(directions) <= 2 * kRoundings * std::numbers::sqrt3 * rounding;
+  }
+};
+
+/// The similarity of a scale and a rotation that brings the mean of the estimate to that of the reference.
+Similarity between_means(const Side& reference, const Side& estimate, double scale,
+                         const Quaterniond& rotation) {
+  return Similarity::mapping(scale, rotation, estimate.first, reference.first,
+                             reference.mean - rotation * Vector3d(scale * estimate.mean));
 }
 
-bool hardly_move(std::span<const Vector3d> positions) {
-  constexpr double kStill_m = 0.001;
-  return std::ranges::all_of(
-      positions, [&](const Vector3d& position) { return (position - positions[0]).norm() < kStill_m; });
+/// sum_i g_i p_i^T of offsets from the centres.
+Matrix3d cross_covariance(const Side& reference, const Side& estimate) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (std::size_t i = 0; i < reference.offsets.size(); ++i)
+    sum += reference.offsets[i] * estimate.offsets[i].transpose();
+  return sum;
 }
 
-/// Of positions of which one set lies on a line or in a point, so that they do not tell a rotation.
-tl::unexpected<Error> flat_positions(std::span<const Vector3d> reference,
-                                     std::span<const Vector3d> estimate) {
-  const auto still = [&](std::string_view whose) {
-    return fmt::format("the camera hardly moves in {} between its {} matched positions", whose,
-                       reference.size());
-  };
-  if (hardly_move(reference)) return undetermined(still("the ground truth"));
-  if (hardly_move(estimate)) return undetermined(still("the estimate"), "look why it stands still");
-  return undetermined(fmt::format("its {} matched positions lie on a line", reference.size()));
+/// What rounding can give sum_i a_i b_i of coordinates with these spreads.
+double rounding_of_products(const Side& reference, double reference_spread, const Side& estimate,
+                            double estimate_spread) {
+  return reference.count() * (reference.rounding * estimate_spread + estimate.rounding * reference_spread +
+                              reference.rounding * estimate.rounding);
+}
+
+tl::unexpected<Error> undetermined(const std::string& why, std::string_view remedy = "") {
+  return fail(
+      ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
+      fmt::format("{}`fusebench eval` with --align origin or --align none needs no motion; alignment of "
+                  "positions needs three that are not on one line",
+                  remedy));
+}
+
+/// Length of the diagonal of the box around the positions.
+template <typename Directions>
+double extent_m(const Side& side, const Directions& directions) {
+  auto least = (directions.transpose() * side.offsets[0]).eval();
+  auto most = least;
+  for (const Vector3d& offset : side.offsets) {
+    const auto along = (directions.transpose() * offset).eval();
+    least = least.cwiseMin(along);
+    most = most.cwiseMax(along);
+  }
+  return (most - least).norm();
+}
+
+/// Of positions that do not determine a rotation. across: the two axes across the main motion of each side.
+tl::unexpected<Error> undetermined_rotation(const Side& reference, const Matrix3x2d& across_reference,
+                                            const Side& estimate, const Matrix3x2d& across_estimate) {
+  const Matrix3d all = Matrix3d::Identity();
+  for (const Side* side : {&reference, &estimate}) {
+    if (side->is_still(all)) {
+      return undetermined(fmt::format("the {} does not move: its {} matched positions extend over {:.3g} m",
+                                      side->name, side->offsets.size(), extent_m(*side, all)));
+    }
+  }
+  for (const auto& [side, across] :
+       {std::pair(&reference, &across_reference), std::pair(&estimate, &across_estimate)}) {
+    const bool is_line =
+        side->is_still(*across) || side->spread(*across) <= std::sqrt(kRankTolerance) * side->spread(all);
+    if (is_line) {
+      return undetermined(
+          fmt::format("the {} moves along a straight line ({} matched positions extend over {:.3g} m, and "
+                      "{:.3g} m across "
+                      "the line), so that the rotation about it is arbitrary",
+                      side->name, side->offsets.size(), extent_m(*side, all), extent_m(*side, *across)));
+    }
+  }
+  return undetermined(fmt::format(
+      "the motions of the reference and the estimate ({} matched positions) have no unique best rotation",
+      reference.offsets.size()));
 }
 
 /// Rotation about z that turns the estimate's positions closest to the reference's.
-Similarity align_yaw(std::span<const SE3> reference, std::span<const SE3> estimate) {
-  const std::vector<Vector3d> p_reference = positions_of(reference);
-  const std::vector<Vector3d> p_estimate = positions_of(estimate);
-  const Vector3d reference_centre = centroid(p_reference);
-  const Vector3d estimate_centre = centroid(p_estimate);
-  Matrix3d correlation = Matrix3d::Zero();
-  if (reference.size() == 1) {
-    correlation = estimate[0].rotation_matrix() * reference[0].rotation_matrix().transpose();
-  } else {
-    for (std::size_t i = 0; i < p_reference.size(); ++i)
-      correlation += (p_estimate[i] - estimate_centre) * (p_reference[i] - reference_centre).transpose();
+Result<Similarity> align_yaw(std::span<const SE3> reference_poses, std::span<const SE3> estimate_poses) {
+  const Side reference("reference", positions_of(reference_poses));
+  const Side estimate("estimate", positions_of(estimate_poses));
+  const bool by_orientation = reference_poses.size() == 1;
+  const Matrix3d H =
+      by_orientation
+          ? Matrix3d(reference_poses[0].rotation_matrix() * estimate_poses[0].rotation_matrix().transpose())
+          : cross_covariance(reference, estimate);
+  const double cosine = H(0, 0) + H(1, 1);
+  const double sine = H(1, 0) - H(0, 1);
+  const Matrix3x2d horizontal = Matrix3d::Identity().leftCols<2>();
+  // Two products for each pose, with errors of two coordinates.
+  const double from_rounding = by_orientation
+                                   ? kRankTolerance
+                                   : kRoundings * std::numbers::sqrt2 *
+                                         rounding_of_products(reference, reference.spread(horizontal),
+                                                              estimate, estimate.spread(horizontal));
+  const double least = std::max(
+      from_rounding, kRankTolerance * std::sqrt(reference.sum_of_squares() * estimate.sum_of_squares()));
+  // Written so that NaN and all-zero fail.
+  if (!(std::hypot(cosine, sine) > least)) {
+    for (const Side* side : {&reference, &estimate}) {
+      if (by_orientation || !side->is_still(horizontal)) continue;
+      return undetermined(fmt::format(
+          "the {} does not move horizontally ({} matched positions extend over {:.3g} m), so that "
+          "the rotation about z is arbitrary",
+          side->name, side->offsets.size(), extent_m(*side, horizontal)));
+    }
+    return undetermined("the reference and the estimate have no unique best rotation about z");
   }
-  const double yaw_rad = 0.5 * std::numbers::pi - std::atan2(correlation(0, 0) + correlation(1, 1),
-                                                             correlation(0, 1) - correlation(1, 0));
-  Similarity result;
-  result.rigid.rotation = so3_exp(yaw_rad * Vector3d::UnitZ());
-  result.rigid.translation = reference_centre - result.rigid.rotation * estimate_centre;
-  return result;
+  return between_means(reference, estimate, 1, so3_exp(std::atan2(sine, cosine) * Vector3d::UnitZ()));
 }
 
 }  // namespace
@@ -98,32 +191,32 @@ std::string_view to_string(AlignmentMode mode) {
   return "";
 }
 
-Result<Similarity> align_positions(std::span<const Vector3d> reference, std::span<const Vector3d> estimate,
-                                   bool with_scale) {
-  check(reference.size() == estimate.size(), "points to align come in pairs");
-  if (reference.size() < 3) return undetermined(fmt::format("{} matched positions", reference.size()));
-  const Vector3d reference_centre = centroid(reference);
-  const Vector3d estimate_centre = centroid(estimate);
-  Matrix3d covariance = Matrix3d::Zero();
-  double estimate_variance = 0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    const Vector3d from_centre = estimate[i] - estimate_centre;
-    covariance += (reference[i] - reference_centre) * from_centre.transpose();
-    estimate_variance += from_centre.squaredNorm();
-  }
-  const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+Result<Similarity> align_positions(std::span<const Vector3d> reference_m,
+                                   std::span<const Vector3d> estimate_m, bool with_scale) {
+  check(reference_m.size() == estimate_m.size(), "points to align come in pairs");
+  if (reference_m.size() < 3)
+    return undetermined(fmt::format("{} matched positions", reference_m.size()), "take more frames: ");
+  const Side reference("reference", reference_m);
+  const Side estimate("estimate", estimate_m);
+  const Eigen::JacobiSVD<Matrix3d> svd(cross_covariance(reference, estimate),
+                                       Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3d singular = svd.singularValues();
-  // Written so that NaN and all-zero fail.
-  if (!(singular[1] > kRankTolerance * singular[0])) return flat_positions(reference, estimate);
   Vector3d signs = Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;  // no reflections
-  Similarity result;
-  result.rigid.rotation =
-      Quaterniond(Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose())).normalized();
-  if (with_scale) result.scale = singular.dot(signs) / estimate_variance;
-  result.rigid.translation =
-      reference_centre - result.rigid.rotation * Vector3d(result.scale * estimate_centre);
-  return result;
+  double from_rounding = 0;
+  for (const int axis : {1, 2}) {
+    from_rounding += rounding_of_products(reference, reference.spread(svd.matrixU().col(axis)), estimate,
+                                          estimate.spread(svd.matrixV().col(axis)));
+  }
+  const double curvature = singular[1] + signs.z() * singular[2];
+  // Written so that NaN and all-zero fail.
+  if (!(curvature > std::max(kRankTolerance * singular[0], kRoundings * from_rounding))) {
+    return undetermined_rotation(reference, svd.matrixU().rightCols<2>(), estimate,
+                                 svd.matrixV().rightCols<2>());
+  }
+  const Quaterniond rotation(Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+  const double scale = with_scale ? singular.dot(signs) / estimate.sum_of_squares() : 1.0;
+  return between_means(reference, estimate, scale, rotation.normalized());
 }
 
 Result<Similarity> align(std::span<const SE3> reference, std::span<const SE3> estimate,
@@ -136,8 +229,8 @@ Result<Similarity> align(std::span<const SE3> reference, std::span<const SE3> es
   const auto estimate_used = estimate.first(used);
 
   const auto onto_first = [&](double scale) {
-    const SE3 scaled{estimate[0].rotation, scale * estimate[0].translation};
-    return Similarity{scale, reference[0] * scaled.inverse()};
+    return Similarity::mapping(scale, (reference[0].rotation * estimate[0].rotation.conjugate()).normalized(),
+                               estimate[0].translation, reference[0].translation, Vector3d::Zero());
   };
   if (request.mode == AlignmentMode::yaw) return align_yaw(reference_used, estimate_used);
   if (request.mode == AlignmentMode::origin && !request.scale_origin) return onto_first(1);

@@ -10,6 +10,7 @@
 
 #include "core/trajectory/association.hpp"
 #include "eval/trajectory_error/alignment.hpp"
+#include "eval/trajectory_error/pose_relation.hpp"
 #include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::trajectory_error {
@@ -48,18 +49,20 @@ double median_interval(std::span<const std::int64_t> stamps) {
   return metrics::statistics(intervals).median;
 }
 
-/// The motions of the estimate that are compared.
+bool skips_itself(const RpeOptions& options) { return options.skip_gaps || options.skip_itself; }
+
+/// The motions of the estimate that are compared. with_itself: how many pairs of a pose with itself are left
+/// out.
 IndexPairs motions_of(const Trajectory& estimate, std::span<const std::int64_t> stamps,
-                      const RpeOptions& options) {
+                      const RpeOptions& options, std::size_t& with_itself) {
   IndexPairs motions =
       options.all_pairs ? all_to_all(estimate.size()) : tum_motions(estimate, {options.delta, options.unit});
-  if (!options.skip_gaps) return motions;
+  if (!skips_itself(options)) return motions;
+  with_itself = std::erase_if(motions, [](const auto& motion) { return motion.first == motion.second; });
+  if (!options.skip_gaps || options.all_pairs || options.unit != DeltaUnit::frames) return motions;
   const double gap_limit_ns = kGapFactor * options.delta * median_interval(stamps);
   std::erase_if(motions, [&](const auto& motion) {
-    const auto& [i, j] = motion;
-    if (i == j) return true;
-    return options.unit == DeltaUnit::frames && !options.all_pairs &&
-           static_cast<double>(stamps[j] - stamps[i]) > gap_limit_ns;
+    return static_cast<double>(stamps[motion.second] - stamps[motion.first]) > gap_limit_ns;
   });
   return motions;
 }
@@ -91,9 +94,11 @@ MatchedPoses match(const Trajectory& ground_truth, const Trajectory& estimate, c
   MatchedPoses poses;
   poses.limit_ns = std::min(2 * median_interval(truth_ns), options.max_difference_s * 1e9);
   for (const StampedPose& pose : estimate) {
-    const std::int64_t wanted = pose.timestamp_ns + offset;
+    const std::int64_t wanted = trajectory_files::clamped_sum(pose.timestamp_ns, offset);
     const std::size_t nearest = nearest_stamp(truth_ns, wanted);
-    const bool near = static_cast<double>(std::abs(truth_ns[nearest] - wanted)) <= poses.limit_ns;
+    const bool near =
+        static_cast<double>(std::abs(trajectory_files::clamped_sum(truth_ns[nearest], -wanted))) <=
+        poses.limit_ns;
     poses.estimate.push_back(pose.T_world_camera);
     poses.truth.push_back(near ? std::optional(ground_truth[nearest].T_world_camera) : std::nullopt);
   }
@@ -102,9 +107,8 @@ MatchedPoses match(const Trajectory& ground_truth, const Trajectory& estimate, c
 
 /// (P_j^-1 P_i)^-1 (G_j^-1 G_i); both have ground truth.
 SE3 motion_error(const MatchedPoses& poses, std::size_t i, std::size_t j) {
-  const SE3 estimate_motion = poses.estimate[j].inverse() * poses.estimate[i];
-  const SE3 truth_motion = poses.truth[j]->inverse() * *poses.truth[i];
-  return estimate_motion.inverse() * truth_motion;
+  return motion_between(motion_between(poses.estimate[j], poses.estimate[i]),
+                        motion_between(*poses.truth[j], *poses.truth[i]));
 }
 
 void list_errors(const MatchedPoses& poses, const IndexPairs& motions,
@@ -195,7 +199,8 @@ Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth, cons
   if (!aligned) return tl::unexpected(aligned.error());
   result.alignment = {"se3", aligned->rigid};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    result.errors_m.push_back((aligned->rigid * estimate_positions[i] - truth_positions[i]).norm());
+    const Vector3d truth = truth_positions[i] - aligned->image;
+    result.errors_m.push_back((aligned->from_image(estimate_positions[i]) - truth).norm());
   }
   result.stats = metrics::statistics(result.errors_m);
   return result;
@@ -214,10 +219,10 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
     const std::size_t motions = estimate.size() * estimate.size();
     if (auto usual = check_compared(options.listing, motions); !usual) return tl::unexpected(usual.error());
     if (auto listed = check_listing(options.listing, motions); !listed) return tl::unexpected(listed.error());
-    stream_errors(std::move(poses), !options.skip_gaps, result);
+    stream_errors(std::move(poses), !skips_itself(options), result);
   } else {
     const std::vector<std::int64_t> estimate_ns = trajectory_files::stamps_of(estimate);
-    list_errors(poses, motions_of(estimate, estimate_ns, options), estimate_ns, result);
+    list_errors(poses, motions_of(estimate, estimate_ns, options, result.with_itself), estimate_ns, result);
   }
   result.coverage = share(result.pairs, result.possible);
   if (result.pairs < 2) {

@@ -71,9 +71,10 @@ struct RpeOptions {
   double offset_s = 0;  ///< added to the estimate's stamps
   /// Not in the script, which chains over missing frames and, across a gap of the estimate longer than twice
   /// delta, pairs a pose with itself (error 0). With frames, a pair that spans more than 1.5 times `delta`
-  /// median intervals of the estimate is skipped; with seconds, a pose is never its own partner. False: as in
-  /// the script.
+  /// median intervals of the estimate is skipped; a pose is never its own partner. False: as in the script.
   bool skip_gaps = true;
+  bool skip_itself =
+      false;  ///< with skip_gaps = false: a pose is not its own partner, the rest as in the script
   MotionListing listing = {};  ///< of all pairs
 };
 
@@ -90,7 +91,8 @@ struct RpeResult {
   double delta = 0;
   DeltaUnit unit = DeltaUnit::seconds;
   std::size_t pairs = 0;
-  std::size_t possible = 0;  ///< pairs of the estimate, before ground truth was asked for
+  std::size_t possible = 0;     ///< pairs of the estimate, before ground truth was asked for
+  std::size_t with_itself = 0;  ///< pairs of a pose with itself that the script has and that are left out
   double coverage = 0;
   double max_difference_s = 0;
   Alignment alignment;  ///< none

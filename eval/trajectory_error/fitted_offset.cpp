@@ -93,9 +93,17 @@ Result<FittedOffset> fitted_offset(const trajectory_files::TrajectoryPair& pair)
   }
   const auto without_offset = align_positions(truth_m, estimate_m, false);
   if (!without_offset) return tl::unexpected(without_offset.error());
+  // Relative to a position of each side, which keeps the digits of positions far from the origin.
+  const Vector3d& centre = without_offset->centre;
+  const Vector3d& image = without_offset->image;
+  for (Pair& each : pairs) {
+    each.reference.translation -= image;
+    each.estimate -= centre;
+  }
   const double duration_s =
       seconds_between(pair.estimate.front().timestamp_ns, pair.estimate.back().timestamp_ns);
-  FittedOffset fit = least_squares(pairs, without_offset->rigid, duration_s);
+  FittedOffset fit =
+      least_squares(pairs, {without_offset->rigid.rotation, without_offset->shift}, duration_s);
   const double sigma_m = largest_sigma(fit.covariance_m2);
   if (!(sigma_m <= kMaxOffsetSigma_m)) {
     return fail(
@@ -106,6 +114,7 @@ Result<FittedOffset> fitted_offset(const trajectory_files::TrajectoryPair& pair)
   }
   for (const Pair& each : pairs) fit.errors_m.push_back(residual(each, fit).norm());
   fit.stats = metrics::statistics(fit.errors_m);
+  fit.T_reference_estimate.translation += image - fit.T_reference_estimate.rotation * centre;
   return fit;
 }
 

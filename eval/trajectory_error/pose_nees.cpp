@@ -17,11 +17,11 @@ namespace {
 constexpr const metrics::StatePart& kOrientationPart = metrics::kStateParts[0];
 constexpr const metrics::StatePart& kPositionPart = metrics::kStateParts[1];
 
-std::optional<PoseConsistencyRow> nees_row(const SE3& truth, const StampedPose& estimate,
+/// Of a pose and the truth in the estimate's world, positions of both relative to the same point.
+std::optional<PoseConsistencyRow> nees_row(const SE3& truth, const SE3& pose, std::int64_t timestamp_ns,
                                            const trajectory_files::PoseCovariance& covariance) {
   PoseConsistencyRow row;
-  row.timestamp_ns = estimate.timestamp_ns;
-  const SE3& pose = estimate.T_world_camera;
+  row.timestamp_ns = timestamp_ns;
   row.orientation_error_rad = so3_log(pose.rotation.conjugate() * truth.rotation);
   row.position_error_m = truth.translation - pose.translation;
   row.orientation_sigma_rad = covariance.orientation_rad2.diagonal().cwiseSqrt();
@@ -89,12 +89,18 @@ Result<PoseConsistency> pose_consistency(const Trajectory& reference,
   result.pairs = pair->size();
   result.possible = pair->possible;
   result.T_reference_estimate = *aligned;
-  const SE3 T_estimate_reference = aligned->rigid.inverse();
+  const Quaterniond R_estimate_reference = aligned->rigid.rotation.conjugate();
   for (std::size_t i = 0; i < pair->size(); ++i) {
     const StampedPose& pose = pair->estimate[i];
     const auto owner =
         std::ranges::lower_bound(estimate.poses, pose.timestamp_ns, {}, &StampedPose::timestamp_ns);
-    const auto row = nees_row(T_estimate_reference * pair->reference[i].T_world_camera, pose,
+    // Both in the estimate's world, positions relative to the centre of the alignment.
+    const SE3& truth = pair->reference[i].T_world_camera;
+    const SE3 truth_there{
+        (R_estimate_reference * truth.rotation).normalized(),
+        R_estimate_reference * Vector3d(truth.translation - aligned->image - aligned->shift)};
+    const SE3 pose_there{pose.T_world_camera.rotation, pose.T_world_camera.translation - aligned->centre};
+    const auto row = nees_row(truth_there, pose_there, pose.timestamp_ns,
                               estimate.covariances[static_cast<std::size_t>(owner - estimate.poses.begin())]);
     if (row) {
       result.rows.push_back(*row);

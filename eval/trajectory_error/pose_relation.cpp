@@ -79,7 +79,7 @@ double absolute_error(PoseRelation relation, const SE3& reference, const SE3& es
   check(relation != PoseRelation::distance_error_ratio, "a ratio of distances is of motions");
   if (relation == PoseRelation::translation || relation == PoseRelation::point_distance)
     return (estimate.translation - reference.translation).norm();
-  return of_difference(relation, estimate.inverse() * reference);
+  return of_difference(relation, motion_between(estimate, reference));
 }
 
 std::optional<double> relative_error(PoseRelation relation, const Motion& reference, const Motion& estimate) {
@@ -90,9 +90,9 @@ std::optional<double> relative_error(PoseRelation relation, const Motion& refere
     if (!(moved_m > 0)) return std::nullopt;
     return 100.0 * error_m / moved_m;
   }
-  const SE3 reference_motion = reference.from.inverse() * reference.to;
-  const SE3 estimate_motion = estimate.from.inverse() * estimate.to;
-  return of_difference(relation, reference_motion.inverse() * estimate_motion);
+  const SE3 reference_motion = motion_between(reference.from, reference.to);
+  const SE3 estimate_motion = motion_between(estimate.from, estimate.to);
+  return of_difference(relation, motion_between(reference_motion, estimate_motion));
 }
 
 }  // namespace fusebench::trajectory_error

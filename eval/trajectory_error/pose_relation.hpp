@@ -36,6 +36,13 @@ struct Motion {
   SE3 to;
 };
 
+/// T_a^-1 T_b. Positions far from the origin are subtracted first, which keeps their digits.
+[[nodiscard]] inline SE3 motion_between(const SE3& T_world_a, const SE3& T_world_b) {
+  const Quaterniond R_a_world = T_world_a.rotation.conjugate();
+  return {(R_a_world * T_world_b.rotation).normalized(),
+          R_a_world * Vector3d(T_world_b.translation - T_world_a.translation)};
+}
+
 /// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) for reference Q and estimate P. Nothing for a ratio of a reference that
 /// did not move.
 [[nodiscard]] std::optional<double> relative_error(PoseRelation relation, const Motion& reference,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace fusebench::trajectory_error {
 
@@ -116,6 +117,8 @@ Result<TrajectoryRequest> request_for(Protocol protocol, TrajectoryMetric metric
   request.association.max_difference_s = row.max_difference_s;
   // TUM's relative error aligns nothing.
   const bool tum_motions = protocol == Protocol::tum && metric == TrajectoryMetric::rpe;
+  // It takes the ground truth within twice its median interval (see RpeOptions).
+  if (tum_motions) request.association.max_difference_s = std::numeric_limits<double>::infinity();
   request.alignment.mode = tum_motions ? AlignmentMode::none : row.alignment;
   request.alignment.single_pose = protocol == Protocol::rpg;
   request.motions = row.motions;

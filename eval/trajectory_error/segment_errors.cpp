@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "eval/trajectory_error/euler_angles.hpp"
+#include "eval/trajectory_error/pose_relation.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -13,10 +14,10 @@ SegmentErrors segment_errors(const trajectory_files::TrajectoryPair& pair, const
   errors.length_m = length_m;
   const std::vector<double> path = path_lengths(pair.reference);
   for (const auto& [i, j] : segments) {
-    const SE3& reference_end = pair.reference[j].T_world_camera;
     const SE3& estimate_end = pair.estimate[j].T_world_camera;
-    const SE3 reference_motion = pair.reference[i].T_world_camera.inverse() * reference_end;
-    SE3 estimate_motion = pair.estimate[i].T_world_camera.inverse() * estimate_end;
+    const SE3 reference_motion =
+        motion_between(pair.reference[i].T_world_camera, pair.reference[j].T_world_camera);
+    SE3 estimate_motion = motion_between(pair.estimate[i].T_world_camera, estimate_end);
     estimate_motion.translation *= scale;
     const SE3 error = reference_motion.inverse() * estimate_motion;
     errors.path_m.push_back(path[j] - path[i]);

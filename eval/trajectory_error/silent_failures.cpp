@@ -7,6 +7,7 @@
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "eval/trajectory_files/stamps.hpp"
+#include "eval/trajectory_error/pose_relation.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -40,8 +41,8 @@ std::vector<JudgedPose> judged_poses(const Trajectory& ground_truth, const Traje
   for (std::size_t now = 1; now < known.size(); ++now) {
     while (before + 1 < now && known[before + 1].timestamp_ns + interval_ns <= known[now].timestamp_ns)
       ++before;
-    const SE3 claimed = known[before].estimate.inverse() * known[now].estimate;
-    const SE3 real = known[before].truth.inverse() * known[now].truth;
+    const SE3 claimed = motion_between(known[before].estimate, known[now].estimate);
+    const SE3 real = motion_between(known[before].truth, known[now].truth);
     const SE3 error = real.inverse() * claimed;
     JudgedPose pose{known[now].timestamp_ns, error.translation.norm(),
                     rotation_angle_rad(real.rotation, claimed.rotation), false};

@@ -36,7 +36,8 @@ SE3 projected(const SE3& pose, Plane plane) {
   return flat;
 }
 
-/// Both sides as they are compared, and what they have in common.
+/// Both sides as they are compared, and what they have in common. Positions are relative to the image of the
+/// alignment: those far from the origin keep the digits that they are given with.
 struct Compared {
   std::vector<SE3> reference;
   std::vector<SE3> estimate;
@@ -48,11 +49,16 @@ Result<Compared> compared(const trajectory_files::TrajectoryPair& pair, const Al
   Compared result{poses_of(pair.reference), poses_of(pair.estimate), {}};
   const Result<Similarity> alignment = align(result.reference, result.estimate, request);
   if (!alignment) return tl::unexpected(alignment.error());
-  for (SE3& pose : result.reference) pose = projected(pose, plane);
-  for (SE3& pose : result.estimate) pose = projected(*alignment * pose, plane);
-  if (keep_poses)
-    result.error.compared = {with_poses(pair.reference, result.reference),
-                             with_poses(pair.estimate, result.estimate)};
+  if (keep_poses) {
+    result.error.compared = {pair.reference, pair.estimate};
+    for (StampedPose& pose : result.error.compared.reference)
+      pose.T_world_camera = projected(pose.T_world_camera, plane);
+    for (StampedPose& pose : result.error.compared.estimate)
+      pose.T_world_camera = projected(*alignment * pose.T_world_camera, plane);
+  }
+  for (SE3& pose : result.reference)
+    pose = projected({pose.rotation, pose.translation - alignment->image}, plane);
+  for (SE3& pose : result.estimate) pose = projected(alignment->from_image(pose), plane);
   result.error.alignment_mode = request.mode;
   result.error.alignment = *alignment;
   result.error.pairs = pair.size();

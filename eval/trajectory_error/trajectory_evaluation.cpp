@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "eval/trajectory_error/ate_rpe.hpp"
@@ -89,14 +90,22 @@ Result<TrajectoryEvaluation> of_motions(const trajectory_files::TrajectoryPair& 
   return result;
 }
 
-/// TUM's script selects motions from all of the estimate, and then asks for ground truth.
+/// What the scale of TUM's relative error is fitted to: poses as they are paired for its absolute error.
+trajectory_files::AssociationOptions paired_for_scale(trajectory_files::AssociationOptions association) {
+  constexpr double kLimit_s = 0.02;
+  if (std::isinf(association.max_difference_s)) association.max_difference_s = kLimit_s;
+  return association;
+}
+
+/// TUM's script selects motions from all of the estimate, and then asks for ground truth. A gap longer than
+/// twice the delta pairs a pose with itself there, which is no motion and is left out.
 Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Trajectory estimate,
                                             const TrajectoryRequest& request) {
   TrajectoryEvaluation result;
   result.request = request;
   if (request.alignment.mode == AlignmentMode::sim3 || request.alignment.mode == AlignmentMode::scale) {
     const Result<trajectory_files::TrajectoryPair> pair =
-        trajectory_files::pair_up(reference, estimate, request.association);
+        trajectory_files::pair_up(reference, estimate, paired_for_scale(request.association));
     if (!pair) return tl::unexpected(pair.error());
     const Result<Similarity> aligned = align(*pair, request.alignment);
     if (!aligned) return tl::unexpected(aligned.error());
@@ -107,15 +116,17 @@ Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Traject
   options.delta = request.delta.value;
   options.unit = request.delta.unit;
   options.all_pairs = request.motions == MotionRule::each_to_each;
-  options.max_difference_s = std::numeric_limits<double>::infinity();
+  options.max_difference_s = request.association.max_difference_s;
   options.offset_s = request.association.offset_s;
   options.skip_gaps = false;
+  options.skip_itself = !options.all_pairs;
   options.listing = request.listing;
   Result<RpeResult> rpe = relative_pose_error(reference, estimate, options);
   if (!rpe) return tl::unexpected(rpe.error());
   result.pairs = rpe->pairs;
   result.possible = rpe->possible;
   result.coverage = rpe->coverage;
+  result.with_itself = rpe->with_itself;
   result.request.association.max_difference_s = rpe->max_difference_s;
   if (request.keep_poses) result.compared = {reference, std::move(estimate)};
   result.series.push_back({"trans_part",

@@ -51,6 +51,7 @@ struct TrajectoryEvaluation {
   std::size_t pairs = 0;            ///< associated poses; of TUM's relative error, motions with ground truth
   std::size_t possible = 0;         ///< that there could have been
   double coverage = 0;              ///< pairs / possible
+  std::size_t with_itself = 0;      ///< of TUM's relative error: see RpeResult
   Similarity alignment;             ///< reference from estimate
   std::vector<ErrorSeries> series;  ///< the first is the protocol's own number
   /// Empty unless request.keep_poses. Of TUM's relative errors: all poses, the estimate's scaled.

@@ -1,6 +1,7 @@
 // Stamps of trajectories, as integers and as the doubles that scripts compare.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -18,13 +19,21 @@ namespace fusebench::trajectory_files {
   return stamps;
 }
 
-/// Limited to half the range of the result, as stamps are; 0 of NaN.
+/// Rounded to the nearest. What 64 bits do not hold, infinity included, becomes the nearest that they hold.
 [[nodiscard]] inline std::int64_t nanoseconds(double seconds) {
-  constexpr std::int64_t kMost_ns = std::numeric_limits<std::int64_t>::max() / 2;
-  constexpr double kMost_s = 4.6e9;
-  if (std::isnan(seconds)) return 0;
-  if (std::abs(seconds) > kMost_s) return seconds < 0 ? -kMost_ns : kMost_ns;
-  return static_cast<std::int64_t>(std::llround(seconds * 1e9));
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const double wanted = seconds * 1e9;
+  if (wanted >= static_cast<double>(kMost)) return kMost;
+  if (wanted <= -static_cast<double>(kMost)) return -kMost;
+  return std::llround(wanted);
+}
+
+/// a + b, at most +-(2^63 - 1), so that it has a negative.
+[[nodiscard]] inline std::int64_t clamped_sum(std::int64_t a, std::int64_t b) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::int64_t sum = 0;
+  if (!__builtin_add_overflow(a, b, &sum)) return std::max(sum, -kMost);
+  return b > 0 ? kMost : -kMost;
 }
 
 /// The double nearest to the decimal stamp, as if its text had been read. At today's epochs that is a grid of

@@ -38,7 +38,7 @@ void interpolate_reference(const Trajectory& reference, const Trajectory& estima
   const std::int64_t offset_ns = nanoseconds(result.options.offset_s);
   const std::int64_t gap_ns = nanoseconds(result.options.max_difference_s);
   for (const StampedPose& pose : estimate) {
-    const std::int64_t wanted_ns = pose.timestamp_ns + offset_ns;
+    const std::int64_t wanted_ns = clamped_sum(pose.timestamp_ns, offset_ns);
     const std::optional<SE3> truth = trajectory::interpolate_pose(reference, wanted_ns, gap_ns);
     if (!truth) continue;
     result.reference.push_back({wanted_ns, *truth});
@@ -66,7 +66,7 @@ void hold_estimate(const Trajectory& own_reference, const Trajectory& estimate, 
   const Trajectory& reference = result.options.evaluated_ns.empty() ? own_reference : interpolated;
   const std::int64_t offset_ns = nanoseconds(result.options.offset_s);
   for (const StampedPose& truth : reference) {
-    const std::int64_t wanted_ns = truth.timestamp_ns - offset_ns;
+    const std::int64_t wanted_ns = clamped_sum(truth.timestamp_ns, -offset_ns);
     const auto clamped = std::clamp(wanted_ns, estimate.front().timestamp_ns, estimate.back().timestamp_ns);
     const std::optional<SE3> pose =
         trajectory::interpolate_pose(estimate, clamped, std::numeric_limits<std::int64_t>::max());

@@ -696,6 +696,31 @@ check_evaluation() {
   prints 'alignment +sim3 from all pairs.*scale 0.90909' "evo's -as" eval ate gt.txt est.txt -as
   prints 'rmse +[0-9.]+e-1[0-9]' "a scaled copy" eval ate gt.txt est.txt -vas
   prints 'alignment +se3 from the first 10 pairs' "n_to_align" eval ate gt.txt est.txt -a --n_to_align 10
+  # A side that does not move, moves on a line, or moves only upwards.
+  awk '{ print $1, 1.1, 2.2, 3.3, 0, 0, 0, 1 }' gt.txt >still.txt
+  awk '{ printf "%s %.4f %.4f %.4f 0 0 0 1\n", $1, 0.0371234 * NR, 0.0212345 * NR, -0.0132173 * NR }' gt.txt >line.txt
+  awk '{ printf "%s 0.7 -0.3 %.4f 0 0 0 1\n", $1, sin(0.1 * NR) }' gt.txt >rising.txt
+  local mode
+  for mode in -a -as -s '--align yaw' '--align_origin -s' '--protocol tum' '--protocol rpg' '--protocol eth3d'; do
+    # shellcheck disable=SC2086
+    refused "a still reference, $mode" 3 'cannot be aligned: the reference does not move' 'hint:--align origin' -- eval ape still.txt gt.txt $mode
+    # shellcheck disable=SC2086
+    refused "a still estimate, $mode" 3 'cannot be aligned: the estimate does not move' 'hint:--align origin' -- eval ape gt.txt still.txt $mode
+  done
+  refused "a still trajectory with a reference" 3 'the estimate does not move' -- eval traj still.txt --ref gt.txt -a
+  refused "a still estimate over motions" 3 'the estimate does not move' -- eval rpe gt.txt still.txt -as
+  prints 'rmse' "a still estimate by its first pose" eval ape gt.txt still.txt --align origin
+  prints 'rmse' "a still estimate as it is" eval ape gt.txt still.txt
+  refused "a line" 3 'the reference moves along a straight line' -- eval ape line.txt line.txt -a
+  prints 'rmse' "a line about the vertical" eval ape line.txt line.txt --align yaw
+  refused "a vertical line" 3 'the estimate does not move horizontally' -- eval ape gt.txt rising.txt --align yaw
+  prints '60 of 60 possible' "a limit without an end" eval ape gt.txt est.txt --protocol tum --t_max_diff 1e300
+  # 3 s without a pose: evaluate_rpe.py pairs the pose before it with itself.
+  sed '21,50d' est.txt >gap.txt
+  checks=$((checks + 1))
+  "$binary" eval rpe gt.txt gap.txt --protocol tum >stdout 2>stderr || complain "a gap: exit code $?"
+  grep -q '^warning: poses without a pose a delta later.*: 1;' stderr || complain "a pose paired with itself is not told"
+  grep -qE '^min +0( |$)' stdout && complain "a pose is compared with itself"
   tumble >tumble.txt
   prints 'fitted offset +\(.*the camera in the reference' "a fitted offset" eval ate tumble.txt tumble.txt --fit_offset
   prints 'trans_part_offset_fitted \[mm\]' "a fitted offset in mm" eval ate tumble.txt tumble.txt --fit_offset --change_unit mm

@@ -65,6 +65,15 @@ void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Trans
                    evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
 }
 
+void warn_of_poses_with_themselves(const trajectory_error::TrajectoryEvaluation& evaluation,
+                                   Transcript& transcript) {
+  if (evaluation.with_itself == 0) return;
+  transcript.warn({fmt::format(
+      "poses without a pose a delta later (gaps longer than twice the delta): {}; evaluate_rpe.py "
+      "pairs them with themselves and counts the error 0, they are left out here",
+      evaluation.with_itself)});
+}
+
 Result<void> change_units(trajectory_error::TrajectoryEvaluation& evaluation, const std::string& wanted) {
   if (wanted.empty()) return {};
   const std::string unit = evaluation.series.front().unit;
@@ -129,6 +138,7 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   if (auto changed = change_units(*evaluation, options.change_unit); !changed)
     return tl::unexpected(changed.error());
   warn_of_few(*evaluation, transcript);
+  warn_of_poses_with_themselves(*evaluation, transcript);
   if (auto written = write_files(options, *sides, *evaluation, *plots, transcript); !written)
     return tl::unexpected(written.error());
   const metric_reports::ComparedFiles files = compared_files(options.files[0], options.files[1], *sides);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "eval/trajectory_error/ate_rpe.hpp"
 #include "eval/trajectory_error/segment_errors.hpp"
 
 namespace fusebench {
@@ -130,6 +131,30 @@ TEST(TrajectoryEvaluation, TumSelectsMotionsBeforeItAsksForTruth) {
   EXPECT_EQ(rpe->series[1].unit, "deg");
   EXPECT_NEAR(rpe->series[0].stats.mean, 0.1 * 10 * 0.02, 1e-3) << "10 frames a second";
   EXPECT_EQ(rpe->possible, 89U) << "motions that end at the last pose do not count";
+}
+
+// The numbers of a run's record, which docs/metrics.md reproduces with `eval rpe --protocol tum`.
+TEST(TrajectoryEvaluation, TumIsAsInARecordAcrossGaps) {
+  const Trajectory truth = curve(600, 0.02);
+  Trajectory estimate = drifting(truth, 0.1, 1e-3);
+  estimate.erase(estimate.begin() + 400, estimate.begin() + 450);
+  estimate.erase(estimate.begin() + 200, estimate.begin() + 215);
+  estimate.erase(estimate.begin() + 100);
+  TrajectoryRequest request = requested(Protocol::tum, TrajectoryMetric::rpe);
+  const auto verb = evaluate(truth, estimate, request);
+  const auto record = relative_pose_error(truth, estimate);
+  ASSERT_TRUE(verb.has_value() && record.has_value());
+  EXPECT_EQ(verb->series[0].errors, record->errors_m);
+  EXPECT_EQ(verb->possible, record->possible);
+  EXPECT_GT(verb->with_itself, 0U);
+  EXPECT_GT(verb->series[0].stats.min, 0);
+
+  // Between two stamps of the reference, further than --t_max_diff from both.
+  Trajectory late = truth;
+  for (StampedPose& pose : late) pose.timestamp_ns += 40'000'000;
+  EXPECT_TRUE(evaluate(truth, late, request).has_value()) << "within twice the median interval";
+  request.association.max_difference_s = 0.02;
+  EXPECT_FALSE(evaluate(truth, late, request).has_value());
 }
 
 TEST(TrajectoryEvaluation, DefaultsAreThoseOfTheProtocol) {
