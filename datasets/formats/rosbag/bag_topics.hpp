@@ -24,6 +24,7 @@ struct StoredMessage {
 struct ImageTopic {
   ImageKind kind = ImageKind::other;
   bool is_compressed = false;
+  bool is_grey = false;
   std::string frame_id;
   std::vector<StoredMessage> images;  ///< in strictly increasing time
   std::size_t repeated = 0;           ///< images with the stamp of another, which are left out
@@ -47,7 +48,8 @@ struct BagTopics {
 /// Errors: those of read_bag; data_corrupt (a message that is not of its type).
 [[nodiscard]] Result<BagTopics> read_topics(const std::filesystem::path& file);
 
-/// The topic of colour, and of depth: aligned to colour before others, pictures of infrared cameras never.
+/// The topic of colour, and of depth: aligned to colour before others, grey
+/// images for colour only if there is no colour, images of infrared cameras never.
 /// Errors: data_missing (there is none; the message lists what there is), data_corrupt (the bag is cut off).
 struct ChosenTopics {
   std::string color;

@@ -64,8 +64,11 @@ bool is_compressed_color(std::string_view encoding) {
 
 }  // namespace
 
+bool is_grey_encoding(std::string_view encoding) { return encoding == "mono8"; }
+
 bool is_color_encoding(std::string_view encoding) {
-  return encoding == "rgb8" || encoding == "bgr8" || encoding == "rgba8" || encoding == "bgra8";
+  return encoding == "rgb8" || encoding == "bgr8" || encoding == "rgba8" || encoding == "bgra8" ||
+         is_grey_encoding(encoding);
 }
 
 bool is_depth_encoding(std::string_view encoding) {

@@ -54,15 +54,16 @@ struct TransformMessage {
 /// realsense2_camera/Extrinsics: the rotation column by column, then the translation in metres.
 [[nodiscard]] std::optional<SE3> extrinsics_message(std::string_view data);
 
-/// What an image is of, by its encoding: "rgb8", "bgr8" and the like, JPEG or PNG; "16UC1", "mono16",
-/// "32FC1", compressed depth. Others are neither.
+/// What an image is of, by its encoding: "rgb8", "bgr8", "mono8" and the like, JPEG or PNG; "16UC1",
+/// "mono16", "32FC1", compressed depth. Others are neither.
 enum class ImageKind { color, depth, other };
 [[nodiscard]] ImageKind kind_of(const ImageMessage& image);
 
 /// Of images that are not compressed.
-inline constexpr std::string_view kColorEncodings = "rgb8, bgr8, rgba8, bgra8";
+inline constexpr std::string_view kColorEncodings = "rgb8, bgr8, rgba8, bgra8, mono8";
 inline constexpr std::string_view kDepthEncodings = "16UC1, mono16, 32FC1";
 [[nodiscard]] bool is_color_encoding(std::string_view encoding);
+[[nodiscard]] bool is_grey_encoding(std::string_view encoding);  ///< one of the above
 [[nodiscard]] bool is_depth_encoding(std::string_view encoding);
 /// compressed_depth_image_transport's, with 12 bytes before the image.
 [[nodiscard]] bool is_compressed_depth(std::string_view encoding);

@@ -195,6 +195,7 @@ TEST_F(Rosbag, EncodingsOfImages) {
   EXPECT_EQ((*color("rgb8", 6, "abcdef"))(1, 0), (Rgb{'d', 'e', 'f'}));
   EXPECT_EQ((*color("bgr8", 8, "abcdef__"))(1, 0), (Rgb{'f', 'e', 'd'})) << "rows may be longer";
   EXPECT_EQ((*color("bgra8", 8, "abc_def_"))(1, 0), (Rgb{'f', 'e', 'd'}));
+  EXPECT_EQ((*color("mono8", 2, "ab"))(1, 0), (Rgb{'b', 'b', 'b'}));
   expect_contains(color("rgb8", 6, "abcde").error().message,
                   "an image: 5 bytes in rows of 6 are not 2x1 pixels");
   expect_contains(color("yuv422", 6, "abcdef").error().message, "encoding 'yuv422' (read are rgb8, ");
@@ -207,6 +208,19 @@ TEST_F(Rosbag, EncodingsOfImages) {
   EXPECT_EQ((*depth("mono16", "\xe8\x03\xff\xff"))(1, 0), 0) << "65535 is no measurement";
   EXPECT_EQ((*depth("32FC1", "\x00\x00\xc0\x3f\x00\x00\xc0\x7f"s))(0, 0), 1.5F);
   EXPECT_EQ((*depth("32FC1", "\x00\x00\xc0\x3f\x00\x00\xc0\x7f"s))(1, 0), 0) << "NaN";
+}
+
+TEST_F(Rosbag, GreyImagesAreTakenWhereThereIsNoColour) {
+  BagTopics topics;
+  topics.images["/camera/depth/image"].kind = ImageKind::depth;
+  ImageTopic grey;
+  grey.kind = ImageKind::color;
+  grey.is_grey = true;
+  for (const char* name : {"/camera/infra1/image", "/camera/confidence/image", "/camera/rgb/image_mono"})
+    topics.images[name] = grey;
+  EXPECT_EQ(choose_topics(topics, "room.bag").value().color, "/camera/rgb/image_mono");
+  topics.images["/usb_cam/image"].kind = ImageKind::color;
+  EXPECT_EQ(choose_topics(topics, "room.bag").value().color, "/usb_cam/image");
 }
 
 TEST_F(Rosbag, CompressedTopicsHoldImageFiles) {
