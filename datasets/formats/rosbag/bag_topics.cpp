@@ -176,8 +176,8 @@ Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesyste
               "needed are rgb8, bgr8, mono8 or JPEG for colour, and 16UC1 or 32FC1 for depth");
 }
 
-std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& topics,
-                                                             std::string_view image_topic) {
+Result<std::optional<calibration::CalibratedCamera>> camera_of_topic(const BagTopics& topics,
+                                                                     std::string_view image_topic) {
   const std::vector<std::string_view> image = components_of(image_topic);
   for (const auto& [topic, camera] : topics.cameras) {
     const std::vector<std::string_view> info = components_of(topic);
@@ -185,9 +185,14 @@ std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& to
     const auto common = static_cast<std::size_t>(end - info.begin());
     // ".../color/camera_info", and ".../Color_0/info/camera_info" of RealSense's own recorder.
     const std::size_t own = info.size() >= 2 && info[info.size() - 2] == "info" ? 2 : 1;
-    if (info.size() > own && common >= info.size() - own) return camera;
+    if (info.size() > own && common >= info.size() - own) {
+      if (camera) return *camera;
+      Error error = camera.error();
+      error.message = fmt::format("{}: {}", printable(topic, 100), error.message);
+      return tl::unexpected(std::move(error));
+    }
   }
-  return std::nullopt;
+  return std::optional<calibration::CalibratedCamera>();
 }
 
 }  // namespace fusebench::formats::rosbag

@@ -38,7 +38,8 @@ struct ImuTopic {
 /// By topic.
 struct BagTopics {
   std::map<std::string, ImageTopic> images;
-  std::map<std::string, calibration::CalibratedCamera> cameras;  ///< the first camera_info of each
+  /// The first camera_info of each; an error for one that cannot be used.
+  std::map<std::string, Result<calibration::CalibratedCamera>> cameras;
   std::map<std::string, ImuTopic> imus;
   std::map<std::string, SE3> extrinsics;
   calibration::FrameTree frames;  ///< of /tf_static
@@ -57,8 +58,9 @@ struct ChosenTopics {
 };
 [[nodiscard]] Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesystem::path& file);
 
-/// The camera_info beside an image topic; nothing if there is none.
-[[nodiscard]] std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& topics,
-                                                                           std::string_view image_topic);
+/// The camera_info of an image topic; nothing if there is none. Error data_corrupt: its distortion is not
+/// supported.
+[[nodiscard]] Result<std::optional<calibration::CalibratedCamera>> camera_of_topic(
+    const BagTopics& topics, std::string_view image_topic);
 
 }  // namespace fusebench::formats::rosbag

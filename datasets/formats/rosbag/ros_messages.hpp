@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "core/base/geometry.hpp"
 #include "core/base/types.hpp"
 #include "datasets/calibration/camera_model.hpp"
@@ -47,8 +48,8 @@ struct TransformMessage {
 [[nodiscard]] std::optional<ImageMessage> image_message(std::string_view data);
 [[nodiscard]] std::optional<ImageMessage> compressed_image_message(std::string_view data);
 [[nodiscard]] std::optional<ImuMessage> imu_message(std::string_view data);
-/// sensor_msgs/CameraInfo: K and a plumb-bob distortion.
-[[nodiscard]] std::optional<calibration::CalibratedCamera> camera_info_message(std::string_view data);
+/// sensor_msgs/CameraInfo: K and distortion. Error: that of calibration::distortion_of_model().
+[[nodiscard]] std::optional<Result<calibration::CalibratedCamera>> camera_info_message(std::string_view data);
 /// tf2_msgs/TFMessage.
 [[nodiscard]] std::optional<std::vector<TransformMessage>> tf_message(std::string_view data);
 /// realsense2_camera/Extrinsics: the rotation column by column, then the translation in metres.
