@@ -47,7 +47,7 @@ const std::vector<RecordingFormat>& formats() {
       {"eth3d", {"associated.txt", "calibration.txt"}, eth3d::open_eth3d_slam},
       {"icl", {"associations.txt or scene_*.depth"}, icl::open_icl_nuim, icl::is_icl_nuim},
       {"bonn", {"rgb.txt", "depth.txt in rgbd_bonn_*"}, bonn::open_bonn_rgbd, bonn::is_bonn},
-      {"tum", {"rgb.txt", "depth.txt"}, tum::open_tum_rgbd},
+      {"tum", {"rgb.txt", "depth.txt or associations.txt"}, tum::open_tum_rgbd, tum::is_tum},
       {"openloris", {"color.txt", "aligned_depth.txt", "sensors.yaml"}, open_loris::open_open_loris},
       {"zr300", {"TIMESTAMP.txt"}, zr300::open_zr300},
       {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, zr300::open_zr300_raw},

@@ -307,6 +307,16 @@ Result<RigCalibration> read_calibration(const std::filesystem::path& file) {
   return rig_calibration(*document, file.string());
 }
 
+Result<void> check_readable(const std::string& toml, const std::string& file) {
+  const auto document = config::parse_toml(toml, file);
+  if (!document) return tl::unexpected(document.error());
+  const auto calibration = rig_calibration(*document, file);
+  if (calibration) return {};
+  Error error = calibration.error();
+  error.message = "not written, since it could not be read: " + error.message;
+  return tl::unexpected(std::move(error));
+}
+
 Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.toml";
   std::error_code ignored;

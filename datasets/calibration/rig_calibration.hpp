@@ -100,7 +100,11 @@ inline constexpr double kMostTranslation_m = 1e8;
 [[nodiscard]] Result<std::optional<RigCalibration>> read_calibration_beside(
     const std::filesystem::path& folder);
 
-/// The text of such a file, which reads back as the same values (rotations up to rounding).
+/// The text of such a file, which reads back as the same values (rotations up to rounding) if all of them are
+/// within the bounds of read_calibration().
 [[nodiscard]] std::string to_toml(const RigCalibration& calibration);
+
+/// Before such a text is written to a file: that it reads back. Error configuration: a value out of bounds.
+[[nodiscard]] Result<void> check_readable(const std::string& toml, const std::string& file);
 
 }  // namespace fusebench::calibration

@@ -90,6 +90,7 @@ std::string accelerometer_text(const recording::Recording& recording) {
 
 Result<void> write_sensors(const recording::Recording& recording, const ExportPlace& place) {
   const std::string toml = calibration::to_toml(calibration_of(recording));
+  if (auto readable = calibration::check_readable(toml, "calibration.toml"); !readable) return readable;
   if (auto written = place.write("calibration.toml", toml); !written) return written;
   if (auto written = place.write("orbslam3.yaml", orbslam3_settings(recording, kTumDepth)); !written)
     return written;

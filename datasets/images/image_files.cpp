@@ -146,17 +146,57 @@ Result<Image<Pixel>> pixels_of(const std::string& name, const OpenedImage& opene
   return image;
 }
 
+/// Pixels of an image that the library has opened.
 template <class Pixel>
-Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout& layout,
-                                std::optional<ImageSize> expected) {
-  const auto opened = open_image(file);
-  if (!opened) return tl::unexpected(opened.error());
-  return pixels_of<Pixel>(file.string(), *opened, layout, expected);
+using PixelReader = Result<Image<Pixel>> (*)(const std::string& name, const OpenedImage& opened,
+                                             std::optional<ImageSize> expected);
+
+Result<GreyImage> grey_pixels(const std::string& name, const OpenedImage& opened,
+                              std::optional<ImageSize> expected) {
+  return pixels_of<std::uint8_t>(name, opened, {1, SampleType::uint8, "a grey image with 8 bits"}, expected);
 }
 
-constexpr Layout kColor{3, SampleType::uint8, "an RGB image with 8 bits a channel"};
-constexpr Layout kGrey{1, SampleType::uint8, "a grey image with 8 bits"};
-constexpr Layout kDepth{1, SampleType::uint16, "a grey image with 16 bits"};
+Result<Image<std::uint16_t>> depth_pixels(const std::string& name, const OpenedImage& opened,
+                                          std::optional<ImageSize> expected) {
+  return pixels_of<std::uint16_t>(name, opened, {1, SampleType::uint16, "a grey image with 16 bits"},
+                                  expected);
+}
+
+std::uint8_t eight_bits(std::uint8_t sample) { return sample; }
+
+/// round(255 sample / 65535)
+std::uint8_t eight_bits(std::uint16_t sample) { return static_cast<std::uint8_t>((sample + 128U) / 257U); }
+
+/// Red, green and blue, or grey for all three; alpha is the last of two or four channels and is not read.
+template <class Sample>
+Result<ColorImage> color_from(const std::string& name, const OpenedImage& opened) {
+  const std::size_t channels = opened.header.channels < 3 ? 1 : 3;
+  ColorImage color(opened.header.width_px, opened.header.height_px);
+  std::vector<Sample> samples(channels * color.data.size());
+  if (const auto read =
+          opened.read_pixels(static_cast<int>(channels), std::as_writable_bytes(std::span(samples)));
+      !read)
+    return damaged_pixels(name, read.error());
+  for (std::size_t i = 0; i < color.data.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      color.data[i][c] = eight_bits(samples[channels * i + (channels == 1 ? 0 : c)]);
+  }
+  return color;
+}
+
+Result<ColorImage> color_pixels(const std::string& name, const OpenedImage& opened,
+                                std::optional<ImageSize> expected) {
+  const ImageHeader& header = opened.header;
+  const bool sampled = header.type == SampleType::uint8 || header.type == SampleType::uint16;
+  if (!sampled || header.channels < 1 || header.channels > 4) {
+    return corrupt(name, fmt::format("expected a colour or grey image with 8 or 16 bits a channel, got {} "
+                                     "channel(s) of {}",
+                                     header.channels, header.type_name));
+  }
+  if (const auto fits = check_size(name, header, expected); !fits) return tl::unexpected(fits.error());
+  return header.type == SampleType::uint8 ? color_from<std::uint8_t>(name, opened)
+                                          : color_from<std::uint16_t>(name, opened);
+}
 
 /// A missing file is the library's to report.
 Result<void> check_file_unchanged(const std::filesystem::path& file,
@@ -180,7 +220,7 @@ bool has_usual_size(std::string_view bytes, std::optional<ImageSize> expected) {
 
 template <class Pixel, class Decode>
 Result<Image<Pixel>> decode_image(const Decode& decode_plain, const std::string& name, std::string_view bytes,
-                                  const Layout& layout) {
+                                  PixelReader<Pixel> pixels) {
   if (has_usual_size(bytes, std::nullopt)) {
     ByteBuffer content(bytes.size());
     std::ranges::copy(bytes, content.bytes.get());
@@ -188,14 +228,14 @@ Result<Image<Pixel>> decode_image(const Decode& decode_plain, const std::string&
   }
   const auto opened = open_bytes(name, bytes);
   if (!opened) return tl::unexpected(opened.error());
-  return pixels_of<Pixel>(name, *opened, layout, std::nullopt);
+  return pixels(name, *opened, std::nullopt);
 }
 
 /// Plain PNGs of recordings take the fast decoder; every other or damaged file is left to the library, which
 /// reports the reason.
 template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
-                                  const Layout& layout, std::optional<ImageSize> expected,
+                                  PixelReader<Pixel> pixels, std::optional<ImageSize> expected,
                                   const std::optional<io::ContentHash>& opened) {
   if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());
   ByteBuffer content = content_of(file);
@@ -206,7 +246,10 @@ Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesys
   }
   std::optional<Image<Pixel>> plain;
   if (has_usual_size(content.text(), expected)) plain = decode_plain(std::move(content));
-  return plain ? Result<Image<Pixel>>(std::move(*plain)) : read_image<Pixel>(file, layout, expected);
+  if (plain) return std::move(*plain);
+  const auto image = open_image(file);
+  if (!image) return tl::unexpected(image.error());
+  return pixels(file.string(), *image, expected);
 }
 
 template <class Pixel>
@@ -237,30 +280,19 @@ Result<ImageSize> read_image_size(const std::filesystem::path& file) {
 
 Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected,
                               const std::optional<io::ContentHash>& opened) {
-  return plain_or_any<Rgb>(decode_plain_png_color, file, kColor, expected, opened);
-}
-
-Result<ColorImage> read_color_or_grey(const std::filesystem::path& file, std::optional<ImageSize> expected,
-                                      const std::optional<io::ContentHash>& opened) {
-  if (const auto same = check_file_unchanged(file, opened); !same) return tl::unexpected(same.error());
-  const auto image = open_image(file);
-  if (!image) return tl::unexpected(image.error());
-  if (image->header.channels != 1) return read_color(file, expected, opened);
-  const auto grey = pixels_of<std::uint8_t>(file.string(), *image, kGrey, expected);
-  if (!grey) return tl::unexpected(grey.error());
-  ColorImage color(grey->width, grey->height);
-  std::ranges::transform(grey->data, color.data.begin(), [](std::uint8_t g) { return Rgb{g, g, g}; });
-  return color;
+  return plain_or_any<Rgb>(decode_plain_png_color, file, color_pixels, expected, opened);
 }
 
 Result<GreyImage> read_grey(const std::filesystem::path& file, std::optional<ImageSize> expected) {
-  return read_image<std::uint8_t>(file, kGrey, expected);
+  const auto image = open_image(file);
+  if (!image) return tl::unexpected(image.error());
+  return grey_pixels(file.string(), *image, expected);
 }
 
 Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
                                           std::optional<ImageSize> expected,
                                           const std::optional<io::ContentHash>& opened) {
-  return plain_or_any<std::uint16_t>(decode_plain_png_grey16, file, kDepth, expected, opened);
+  return plain_or_any<std::uint16_t>(decode_plain_png_grey16, file, depth_pixels, expected, opened);
 }
 
 Result<Image<float>> read_float(const std::filesystem::path& file, std::optional<ImageSize> expected,
@@ -283,11 +315,11 @@ Result<Image<float>> read_float(const std::filesystem::path& file, std::optional
 }
 
 Result<ColorImage> decode_color(const std::string& name, std::string_view bytes) {
-  return decode_image<Rgb>(decode_plain_png_color, name, bytes, kColor);
+  return decode_image<Rgb>(decode_plain_png_color, name, bytes, color_pixels);
 }
 
 Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string_view bytes) {
-  return decode_image<std::uint16_t>(decode_plain_png_grey16, name, bytes, kDepth);
+  return decode_image<std::uint16_t>(decode_plain_png_grey16, name, bytes, depth_pixels);
 }
 
 Result<void> write_png(const std::filesystem::path& file, const ColorImage& image) {

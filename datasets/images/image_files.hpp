@@ -1,4 +1,4 @@
-// Image files: 8-bit colour (PNG, JPEG), 8-bit grey and 16-bit grey (PNG). The only user of the image
+// Image files: colour (PNG, JPEG), grey with 8 and 16 bits (PNG). The only user of the image
 // library, which is loaded by the first image that it is needed for: one that is not a plain PNG of a
 // recording (plain_png.hpp: colour, 16-bit grey), or damaged.
 #pragma once
@@ -25,8 +25,10 @@ struct ImageSize {
 /// Size as the header says. Errors as below.
 [[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
 
-/// Reads an image with three channels of 8 bits. expected: the size that it must have; opened: the bytes that
-/// the file must have, those which it had when its recording was opened.
+/// Reads a colour or grey image with 8 or 16 bits a channel. Grey gives three equal channels; alpha is left
+/// out, and the colour of transparent pixels is as stored. 16 bits become 8: round(255 value / 65535).
+/// expected: the size that it must have; opened: the bytes that the file must have, those which it had when
+/// its recording was opened.
 /// Errors: data_missing (no such file); data_corrupt (changed, unreadable, truncated, other channels, bit
 /// depth or size); io (there is no image library, and this image needs it).
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
@@ -42,19 +44,14 @@ struct ImageSize {
     const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
     const std::optional<io::ContentHash>& opened = std::nullopt);
 
-/// Reads a colour image, or a grey one of 8 bits as colour with three equal channels. Errors as read_color().
-[[nodiscard]] Result<ColorImage> read_color_or_grey(
-    const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
-    const std::optional<io::ContentHash>& opened = std::nullopt);
-
 /// Reads the first channel of an image of floating-point numbers (OpenEXR), raw values. Errors as
 /// read_color().
 [[nodiscard]] Result<Image<float>> read_float(const std::filesystem::path& file,
                                               std::optional<ImageSize> expected = std::nullopt,
                                               const std::optional<io::ContentHash>& opened = std::nullopt);
 
-/// Decodes an image in memory, a PNG or JPEG with three channels of 8 bits, or a PNG with one of 16. name:
-/// says in messages where it is from. Errors: data_corrupt, io as read_color().
+/// Decodes an image in memory: a PNG or JPEG as read_color() takes it, or a PNG with one channel of 16 bits.
+/// name: says in messages where it is from. Errors: data_corrupt, io as read_color().
 [[nodiscard]] Result<ColorImage> decode_color(const std::string& name, std::string_view bytes);
 [[nodiscard]] Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string_view bytes);
 

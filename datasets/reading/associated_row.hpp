@@ -1,7 +1,7 @@
 // Lists that name a colour and a depth image in one row: "stamp file stamp file".
 //
 // The order of the two is not a convention: TUM's associate.py and ETH3D write colour first, ICL-NUIM depth
-// first. So the images' folder tells which is which, never the column.
+// first. So the images' folders, else their names, decide which is which, never the column.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,12 @@
 
 #include "core/base/error.hpp"
 #include "core/io/text_table.hpp"
+#include "datasets/recording/recording.hpp"
 
 namespace fusebench::reading {
 
-/// One row; the depth image is the one whose folder's name begins with "depth".
+/// One row. The depth image is the one whose folder's name begins with "depth" (in any case), else the one
+/// with "depth" in its name.
 struct AssociatedRow {
   std::string color_stamp;
   std::string depth_stamp;
@@ -27,6 +29,11 @@ struct AssociatedRow {
 [[nodiscard]] Result<void> for_each_associated_row(
     const std::filesystem::path& list,
     const std::function<Result<void>(const io::TextTable& table, const AssociatedRow& row)>& use);
+
+/// Adds a frame for each row, at its times in seconds. Errors: those above; data_corrupt (a time, times of
+/// colour that do not rise).
+[[nodiscard]] Result<void> add_associated_frames(const std::filesystem::path& list,
+                                                 recording::Recording& recording);
 
 /// The first row, to recognise a format; nothing if there is no readable one. The images need not exist.
 [[nodiscard]] std::optional<AssociatedRow> first_associated_row(const std::filesystem::path& list);

@@ -76,6 +76,24 @@ Result<std::vector<trajectory::AssociatedPair>> pair_times(const ImageTimes& col
   return pairs;
 }
 
+void make_stamps_regular(std::string_view list, const recording::ReadOptions& options,
+                         recording::Recording& recording) {
+  std::vector<std::int64_t> color_ns;
+  std::vector<std::int64_t> depth_ns;
+  for (const recording::FrameEntry& frame : recording.frames) {
+    color_ns.push_back(frame.timestamp_ns);
+    depth_ns.push_back(frame.depth_timestamp_ns);
+  }
+  const std::string color_name = fmt::format("{}, colour", list);
+  const std::string depth_name = fmt::format("{}, depth", list);
+  color_ns = capture_times({color_name, color_ns}, options, recording);
+  depth_ns = capture_times({depth_name, depth_ns}, options, recording);
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    recording.frames[k].capture_ns = color_ns[k];
+    recording.frames[k].depth_capture_ns = depth_ns[k];
+  }
+}
+
 Result<void> pair_images(const ImageList& color, const ImageList& depth,
                          const recording::ReadOptions& options, recording::Recording& recording) {
   const std::vector<std::int64_t> color_ns = stamps(color.images);

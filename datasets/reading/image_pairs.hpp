@@ -28,6 +28,11 @@ struct ImageTimes {
     const ImageTimes& color, const ImageTimes& depth, const recording::ReadOptions& options,
     recording::Recording& recording);
 
+/// The same for frames that a list has paired already: removes the jitter of both sensors' stamps, as
+/// options.regular_stamps says. list: its name, for the notes.
+void make_stamps_regular(std::string_view list, const recording::ReadOptions& options,
+                         recording::Recording& recording);
+
 /// Images of one sensor in strictly increasing time; name: the list's file, for messages.
 struct ImageList {
   std::string_view name;

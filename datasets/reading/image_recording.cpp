@@ -200,7 +200,7 @@ Result<void> calibrate_imu(recording::Recording& recording,
 
 Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding) {
   return attach_images(recording, decoding.calibration, decoding.identity,
-                       image_files(recording.frames, decoding.read_color, decoding.read_depth));
+                       image_files(recording.frames, decoding.read_depth));
 }
 
 Result<void> attach_images(recording::Recording& recording, const calibration::RigCalibration& calibration,

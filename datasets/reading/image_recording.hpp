@@ -5,7 +5,6 @@
 
 #include "core/base/error.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
-#include "datasets/images/image_files.hpp"
 #include "datasets/reading/image_source.hpp"
 #include "datasets/recording/recording.hpp"
 
@@ -18,7 +17,6 @@ struct ImageDecoding {
   calibration::RigCalibration calibration;
   DepthReader read_depth;
   std::string identity;  ///< names the way depth is read ("png 5000"), for the fingerprint
-  ColorReader read_color = images::read_color;
 };
 
 /// The scale of depth by which a recording is read: what the calibration says, else that of the format, which

@@ -67,8 +67,7 @@ DepthReader png_depth(double units_per_metre) {
   };
 }
 
-ImageSource image_files(std::vector<recording::FrameEntry> frames, ColorReader read_color,
-                        DepthReader read_depth) {
+ImageSource image_files(std::vector<recording::FrameEntry> frames, DepthReader read_depth) {
   const auto listed = std::make_shared<const std::vector<recording::FrameEntry>>(std::move(frames));
   ImageSource source;
   source.color_size = [listed] { return images::read_image_size(listed->front().color_file); };
@@ -79,10 +78,9 @@ ImageSource image_files(std::vector<recording::FrameEntry> frames, ColorReader r
     if (!depth) return tl::unexpected(depth.error());
     return ImageHashes{*color, *depth};
   };
-  source.read_color = [listed, read = std::move(read_color)](std::size_t frame,
-                                                             const images::ImageSize& expected,
-                                                             const io::ContentHash& opened) {
-    return read((*listed)[frame].color_file, expected, opened);
+  source.read_color = [listed](std::size_t frame, const images::ImageSize& expected,
+                               const io::ContentHash& opened) {
+    return images::read_color((*listed)[frame].color_file, expected, opened);
   };
   source.read_depth = [listed, read = std::move(read_depth)](std::size_t frame,
                                                              const images::ImageSize& expected,

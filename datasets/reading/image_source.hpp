@@ -22,11 +22,6 @@ using DepthReader =
     std::function<Result<DepthImage>(const std::filesystem::path& file, const images::ImageSize& expected,
                                      const std::optional<io::ContentHash>& opened)>;
 
-/// The same for colour.
-using ColorReader =
-    std::function<Result<ColorImage>(const std::filesystem::path& file, const images::ImageSize& expected,
-                                     const std::optional<io::ContentHash>& opened)>;
-
 /// 16-bit values in metres; units_per_metre: the value of one metre. 0 and 65535 are no measurement.
 [[nodiscard]] DepthImage depth_in_metres(const Image<std::uint16_t>& values, double units_per_metre);
 
@@ -45,7 +40,7 @@ struct ImageSource {
   std::function<Result<images::ImageSize>()> color_size;
   /// Adds the stored bytes of both images.
   std::function<Result<ImageHashes>(std::size_t frame, io::Fingerprint& fingerprint)> add_to;
-  /// As ColorReader and DepthReader.
+  /// Colour as images::read_color(), depth as DepthReader.
   std::function<Result<ColorImage>(std::size_t frame, const images::ImageSize& expected,
                                    const io::ContentHash& opened)>
       read_color;
@@ -54,9 +49,8 @@ struct ImageSource {
       read_depth;
 };
 
-/// Images that are files of their own.
-[[nodiscard]] ImageSource image_files(std::vector<recording::FrameEntry> frames, ColorReader read_color,
-                                      DepthReader read_depth);
+/// Images that are files of their own; colour is read by images::read_color().
+[[nodiscard]] ImageSource image_files(std::vector<recording::FrameEntry> frames, DepthReader read_depth);
 
 /// The stored bytes of an image within a larger file.
 struct StoredImage {

@@ -1,12 +1,15 @@
 #include "datasets/reading/json_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/printable.hpp"
 #include "core/io/bounded_text.hpp"
 #include "datasets/reading/text_matrix.hpp"
 
@@ -65,6 +68,16 @@ Result<std::vector<double>> json_numbers(const nlohmann::json& object, const std
     if (numbers.size() == count) return numbers;
   }
   return wrong(file, fmt::format("needs the key {}, a list of {} finite numbers", key, count));
+}
+
+void warn_of_unused_keys(const nlohmann::json& object, std::span<const std::string_view> known,
+                         const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  std::vector<std::string> unused;
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::find(known, key) == known.end()) unused.push_back(printable(key, 40));
+  }
+  if (!unused.empty())
+    warnings.push_back(fmt::format("{}: not used: {}", file.string(), fmt::join(unused, ", ")));
 }
 
 Result<PinholeCamera> json_camera(const nlohmann::json& object, const JsonCameraKeys& keys,

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -21,6 +23,10 @@ namespace fusebench::reading {
                                          const std::filesystem::path& file);
 [[nodiscard]] Result<std::vector<double>> json_numbers(const nlohmann::json& object, const std::string& key,
                                                        std::size_t count, const std::filesystem::path& file);
+
+/// Warns of the keys of an object that are not among `known`: they are not used.
+void warn_of_unused_keys(const nlohmann::json& object, std::span<const std::string_view> known,
+                         const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 /// A camera of the keys of its width and height and of its matrix K, nine numbers column by column. Errors:
 /// those of json_numbers; data_corrupt (a size that is no whole number from 1 to 16384, no camera's matrix).

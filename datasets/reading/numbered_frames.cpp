@@ -32,6 +32,10 @@ std::optional<std::int64_t> frame_number(std::string_view text) {
   return index;
 }
 
+double frame_rate_hz(const recording::ReadOptions& options, std::optional<double> published_hz) {
+  return options.frame_rate_hz.value_or(published_hz.value_or(recording::kUsualFrameRate_hz));
+}
+
 std::int64_t frame_time_ns(std::int64_t index, double rate_hz) {
   return std::llround(1e9 * static_cast<double>(index) / rate_hz);
 }
@@ -83,14 +87,13 @@ Result<std::vector<NumberedFrame>> pair_numbered(const NumberedFiles& color, con
   return frames;
 }
 
-void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view publisher,
-                         const recording::ReadOptions& options, recording::Recording& recording) {
+void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view reason, double rate_hz,
+                         recording::Recording& recording) {
   for (const NumberedFrame& frame : frames) {
-    const std::int64_t time_ns = frame_time_ns(frame.index, options.frame_rate_hz);
+    const std::int64_t time_ns = frame_time_ns(frame.index, rate_hz);
     recording.frames.push_back({time_ns, time_ns, time_ns, time_ns, frame.color_file, frame.depth_file});
   }
-  recording.notes.push_back(fmt::format("time: {} has no stamps; frame k is taken to be at k / {} s",
-                                        publisher, options.frame_rate_hz));
+  recording.notes.push_back(fmt::format("time: {}; frame k is taken to be at k / {} s", reason, rate_hz));
   const std::int64_t span = frames.back().index - frames.front().index + 1;
   const std::int64_t missing = span - static_cast<std::int64_t>(frames.size());
   if (missing > 0) {

@@ -25,6 +25,10 @@ struct NumberedFrame {
 /// A frame's number as a file writes it: digits only, below 10^9; nothing otherwise.
 [[nodiscard]] std::optional<std::int64_t> frame_number(std::string_view text);
 
+/// The rate of a recording without stamps: the options', else that which its files publish, else 30 Hz.
+[[nodiscard]] double frame_rate_hz(const recording::ReadOptions& options,
+                                   std::optional<double> published_hz = std::nullopt);
+
 /// The time given to a frame: index / rate, to the nearest nanosecond.
 [[nodiscard]] std::int64_t frame_time_ns(std::int64_t index, double rate_hz);
 
@@ -53,8 +57,8 @@ using NumberedFiles = std::map<std::int64_t, std::filesystem::path>;
 
 /// Fills recording.frames from frames in the order of their index, and notes how they got their time.
 /// Missing indices between the first and the last are counted in a warning. frames must not be empty.
-/// publisher: who gives no stamps, for the note.
-void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view publisher,
-                         const recording::ReadOptions& options, recording::Recording& recording);
+/// reason: why there are no stamps, for the note ("7-Scenes has no stamps").
+void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view reason, double rate_hz,
+                         recording::Recording& recording);
 
 }  // namespace fusebench::reading

@@ -12,6 +12,7 @@
 #include "core/base/printable.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
+#include "datasets/calibration/distortion_model.hpp"
 
 namespace fusebench::reading {
 
@@ -272,6 +273,23 @@ Result<std::vector<double>> SensorYaml::numbers(std::string_view key, std::size_
   if (numbers.size() == count && value->items.size() == count) return numbers;
   return fail_at(key, count == 1 ? fmt::format("{} must be a finite number", key)
                                  : fmt::format("{} must be a list of {} finite numbers", key, count));
+}
+
+Result<calibration::BrownConrady> yaml_distortion(const SensorYaml& yaml, const std::string& model_key,
+                                                  const std::string& coefficients_key) {
+  const auto entry = std::ranges::find(yaml.values(), coefficients_key, &YamlValue::key);
+  if (entry == yaml.values().end()) return calibration::BrownConrady{};
+  const auto coefficients = yaml.numbers(coefficients_key, entry->items.size());
+  if (!coefficients)
+    return yaml.fail_at(
+        coefficients_key,
+        fmt::format("{} must be a list of finite numbers: k1, k2, p1, p2 and, if it is known, k3",
+                    coefficients_key));
+  auto distortion = calibration::distortion_of_model(yaml.text(model_key).value_or(""), *coefficients);
+  if (distortion) return distortion;
+  auto error = yaml.fail_at(yaml.has(model_key) ? model_key : coefficients_key, distortion.error().message);
+  error.value().hint = distortion.error().hint;
+  return error;
 }
 
 }  // namespace fusebench::reading

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "datasets/calibration/camera_model.hpp"
 
 namespace fusebench::reading {
 
@@ -47,5 +48,12 @@ class SensorYaml {
   std::string file_;
   std::vector<YamlValue> values_;
 };
+
+/// The distortion of a model's name and its coefficients; none if there are no coefficients. Errors
+/// data_corrupt, with file:line: coefficients that are no list of finite numbers; a model that
+/// calibration::distortion_of_model() does not support.
+[[nodiscard]] Result<calibration::BrownConrady> yaml_distortion(const SensorYaml& yaml,
+                                                                const std::string& model_key,
+                                                                const std::string& coefficients_key);
 
 }  // namespace fusebench::reading

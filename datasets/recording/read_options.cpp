@@ -14,10 +14,8 @@ Result<void> check_read_options(const ReadOptions& options) {
     return fail(ErrorCode::configuration,
                 fmt::format("max_difference_s = {} (allowed: above 0, up to 1)", options.max_difference_s));
   }
-  if (!(options.frame_rate_hz >= 1 && options.frame_rate_hz <= 1000)) {
-    return fail(ErrorCode::configuration,
-                fmt::format("frame_rate_hz = {} (allowed: 1 to 1000)", options.frame_rate_hz));
-  }
+  if (const auto& rate_hz = options.frame_rate_hz; rate_hz && !(*rate_hz >= 1 && *rate_hz <= 1000))
+    return fail(ErrorCode::configuration, fmt::format("frame_rate_hz = {} (allowed: 1 to 1000)", *rate_hz));
   return {};
 }
 

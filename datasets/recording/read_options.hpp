@@ -13,6 +13,9 @@
 
 namespace fusebench::recording {
 
+/// Of most cameras.
+inline constexpr double kUsualFrameRate_hz = 30;
+
 /// Each reader uses those that apply to its format.
 struct ReadOptions {
   std::optional<calibration::RigCalibration>
@@ -22,8 +25,9 @@ struct ReadOptions {
   std::optional<double> depth_units_per_metre;  ///< value of one metre in the depth images
   double max_difference_s = 0.02;  ///< between a colour image and its depth image, for formats with two lists
   bool regular_stamps = true;      ///< remove the jitter of the stamps (see regular_stamps.hpp)
-  double frame_rate_hz = 30;       ///< of recordings without stamps (ICL-NUIM)
-  bool filtered_depth = false;     ///< take the depth that the recording's authors have filtered
+  /// Of recordings without stamps (ICL-NUIM); else what their files say, else kUsualFrameRate_hz.
+  std::optional<double> frame_rate_hz;
+  bool filtered_depth = false;  ///< take the depth that the recording's authors have filtered
 };
 
 /// Errors: configuration (an option out of range).

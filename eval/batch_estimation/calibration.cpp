@@ -239,6 +239,13 @@ smoother::BatchOptions batch_options(const recording::Recording& recording, cons
   return batch;
 }
 
+/// Read-outs within the bounds of a calibration: the estimate of one that is about 0 may be below 0.
+SensorTiming possible_timing(SensorTiming timing) {
+  for (double* const readout_s : {&timing.color_readout_s, &timing.depth_readout_s})
+    *readout_s = std::clamp(*readout_s, 0.0, calibration::kMostReadout_s);
+  return timing;
+}
+
 }  // namespace
 
 Result<CameraImuCalibration> calibrate(const recording::Recording& recording, const config::Config& config,
@@ -292,7 +299,7 @@ calibration::RigCalibration calibrated_rig(const recording::Recording& recording
   rig.imu = calibration::ImuCalibration{calibration.T_imu_camera, recording.rig.imu_noise,
                                         calibration.time_offset_s, calibration.gyroscope_scale.value,
                                         calibration.accelerometer_scale.value};
-  rig.color.timing = calibration.timing;
+  rig.color.timing = possible_timing(calibration.timing);
   rig.source = fmt::format(
       "T_imu_color and time_offset_s by fusebench calibrate on {} frames of {} (standard deviations {:.3f} "
       "deg, {:.1f} mm, {:.2f} ms); the rest: {}",

@@ -89,8 +89,8 @@ struct CameraImuCalibration {
                                                      const CalibrationOptions& options,
                                                      const Workers& workers, const run::RunControl& control);
 
-/// What the recording's files said with the new extrinsic, offset, timing and scales, ready for a file. The
-/// recording as it was opened.
+/// What the recording's files said with the new extrinsic, offset, timing and scales, ready for a file:
+/// read-outs below 0 are 0. The recording as it was opened.
 [[nodiscard]] calibration::RigCalibration calibrated_rig(const recording::Recording& recording,
                                                          const CameraImuCalibration& calibration);
 

@@ -95,6 +95,9 @@ std::string sensor_lines(const CameraImuCalibration& c) {
                 ? fmt::format("sigma {:.3f}; prior {:.3f}, sigma {:.3f}\n", 1e3 * row.sigma_s,
                               1e3 * row.before_s, 1e3 * row.before_sigma_s)
                 : std::string("held: exact by the calibration\n");
+    if (row.key.ends_with("readout") && row.value_s < 0)
+      text += fmt::format("{:<28}0 in the calibration, since no read-out is below 0 ({:.1f} sigmas away)\n",
+                          "", -row.value_s / row.sigma_s);
   }
   const auto scale = [&](std::string_view name, const Known<Vector3d>& known) {
     text += known.sigma.isZero() ? fmt::format("{:<28}held\n", name) : known_line(name, known, 1.0, "");

@@ -6,8 +6,8 @@
 
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory.hpp"
-#include "eval/trajectory_files/stamps.hpp"
 #include "eval/trajectory_error/pose_relation.hpp"
+#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::trajectory_error {
 

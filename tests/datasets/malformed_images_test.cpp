@@ -129,16 +129,8 @@ TEST_F(MalformedImage, SoundChunksWithBrokenContent) {
 }
 
 TEST_F(MalformedImage, OtherLayouts) {
-  const auto bits_16 = with_header(color_, kBits, "\x10");
-  const auto with_alpha = with_header(color_, kColorType, "\x06");
-  EXPECT_NE(read_color(write("a.png", bits_16))
-                .error()
-                .message.find("expected an RGB image with 8 bits a channel, got 3 channel(s) of uint16"),
-            std::string::npos);
-  EXPECT_NE(read_color(write("a.png", with_alpha)).error().message.find("got 4 channel(s)"),
-            std::string::npos);
-  EXPECT_NE(read_color(folder_ / "depth.png").error().message.find("got 1 channel(s) of uint16"),
-            std::string::npos);
+  expect_refused("too few pixels for 16 bits", with_header(color_, kBits, "\x10"), "damaged image");
+  expect_refused("too few pixels for alpha", with_header(color_, kColorType, "\x06"), "damaged image");
   EXPECT_NE(read_depth16(folder_ / "color.png").error().message.find("got 3 channel(s) of uint8"),
             std::string::npos);
   EXPECT_NE(read_depth16(folder_ / "grey.png").error().message.find("got 1 channel(s) of uint8"),

@@ -1,6 +1,8 @@
 // Descriptions of cameras and poses: YAML, matrices as text, and Record3D's JSON.
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "datasets/formats/open_loris/transforms.hpp"
 #include "datasets/formats/record3d/record3d_metadata.hpp"
@@ -48,7 +50,8 @@ void check_matrices(const std::filesystem::path& file) {
 }
 
 void check_metadata(const std::filesystem::path& file) {
-  const auto metadata = formats::record3d::read_record3d_metadata(file);
+  std::vector<std::string> warnings;
+  const auto metadata = formats::record3d::read_record3d_metadata(file, warnings);
   if (!metadata) return check_error(metadata.error(), file);
   check(metadata->camera.width_px > 0 && metadata->camera.fx_px > 0, "a camera has a size");
   check(std::ranges::is_sorted(metadata->timestamps_ns), "time rises");

@@ -1,6 +1,8 @@
 // The tables of Stray Scanner.
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "datasets/formats/stray/stray_tables.hpp"
 #include "datasets/recording/sensor_columns.hpp"
@@ -15,7 +17,8 @@ using namespace formats::stray;
 void stray(std::string_view bytes) {
   static const MemoryFile file("odometry.csv");
   file.write(bytes);
-  const auto frames = read_stray_odometry(file.path());
+  std::vector<std::string> warnings;
+  const auto frames = read_stray_odometry(file.path(), warnings);
   if (!frames) check_error(frames.error(), file.path());
   for (std::size_t i = 0; frames && i < frames->size(); ++i) {
     const StrayFrame& frame = (*frames)[i];

@@ -10,7 +10,6 @@
 
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
-#include "core/trajectory/trajectory_file.hpp"
 #include "datasets/reading/associated_row.hpp"
 #include "datasets/reading/image_recording.hpp"
 #include "datasets/reading/side_files.hpp"
@@ -46,24 +45,6 @@ Result<calibration::RigCalibration> read_intrinsics(const std::filesystem::path&
   return calibration;
 }
 
-Result<void> read_frames(const std::filesystem::path& folder, recording::Recording& recording) {
-  const auto take = [&](const io::TextTable& table, const reading::AssociatedRow& row) -> Result<void> {
-    const auto color_ns = io::parse_time_ns(row.color_stamp);
-    if (!color_ns) return table.fail_here(color_ns.error().message, color_ns.error().hint);
-    const auto depth_ns = io::parse_time_ns(row.depth_stamp);
-    if (!depth_ns) return table.fail_here(depth_ns.error().message, depth_ns.error().hint);
-    auto& frames = recording.frames;
-    if (!frames.empty() && *color_ns <= frames.back().timestamp_ns) {
-      return table.fail_here(fmt::format("time {} does not come after {} of the row before", row.color_stamp,
-                                         trajectory::stamp_text(frames.back().timestamp_ns)),
-                             "sort the file by its first column, and remove rows that repeat a time");
-    }
-    frames.push_back({*color_ns, *depth_ns, *color_ns, *depth_ns, row.color_file, row.depth_file});
-    return {};
-  };
-  return reading::for_each_associated_row(folder / "associated.txt", take);
-}
-
 /// imu.txt, else imu.csv beside.
 Result<void> take_imu(const std::filesystem::path& folder, const calibration::RigCalibration& calibration,
                       recording::Recording& recording) {
@@ -95,7 +76,8 @@ Result<recording::Recording> open_eth3d_slam(const std::filesystem::path& folder
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return read_intrinsics(folder / "calibration.txt"); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
-  if (const auto read = read_frames(folder, recording); !read) return tl::unexpected(read.error());
+  if (const auto read = reading::add_associated_frames(folder / "associated.txt", recording); !read)
+    return tl::unexpected(read.error());
   if (const auto read = reading::read_ground_truth_beside(folder, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = take_imu(folder, *calibration, recording); !read) return tl::unexpected(read.error());

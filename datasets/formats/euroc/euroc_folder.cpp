@@ -10,7 +10,6 @@
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "datasets/formats/euroc/euroc_sensors.hpp"
-#include "datasets/images/image_files.hpp"
 #include "datasets/reading/image_list.hpp"
 #include "datasets/reading/image_pairs.hpp"
 #include "datasets/reading/image_recording.hpp"
@@ -134,9 +133,8 @@ Result<recording::Recording> open_euroc(const fs::path& folder, const recording:
     return tl::unexpected(read.error());
   if (const auto read = read_imu(mav0, recording); !read) return tl::unexpected(read.error());
   const double units = reading::settled_depth_units(*calibration, kUnitsPerMetre);
-  const auto attached =
-      reading::attach_images(recording, {std::move(*calibration), reading::png_depth(units),
-                                         fmt::format("png {}", units), images::read_color_or_grey});
+  const auto attached = reading::attach_images(
+      recording, {std::move(*calibration), reading::png_depth(units), fmt::format("png {}", units)});
   if (!attached) return tl::unexpected(attached.error());
   return recording;
 }

@@ -41,21 +41,6 @@ Result<SE3> pose_in_body(const SensorYaml& yaml) {
                       fmt::format("T_BS is no rigid transform ({})", calibration::kRigidTransformRule));
 }
 
-Result<calibration::BrownConrady> distortion_of(const SensorYaml& yaml) {
-  if (!yaml.has("distortion_coefficients")) return calibration::BrownConrady{};
-  const auto four = yaml.numbers("distortion_coefficients", 4);
-  const auto d = four ? four : yaml.numbers("distortion_coefficients", 5);
-  if (!d)
-    return yaml.fail_at("distortion_coefficients",
-                        "distortion_coefficients must be a list of 4 or 5 finite numbers");
-  const calibration::BrownConrady distortion{(*d)[0], (*d)[1], (*d)[2], (*d)[3], d->size() > 4 ? (*d)[4] : 0};
-  const std::string model = yaml.text("distortion_model").value_or("radial-tangential");
-  if (model == "radial-tangential" || distortion.is_zero()) return distortion;
-  return yaml.fail_at("distortion_model",
-                      "the distortion must be radial-tangential: undistort the images with the program "
-                      "that calibrated them");
-}
-
 Result<Camera> read_camera(const std::filesystem::path& file) {
   const auto yaml = SensorYaml::read(file);
   if (!yaml) return tl::unexpected(yaml.error());
@@ -69,7 +54,7 @@ Result<Camera> read_camera(const std::filesystem::path& file) {
   if (!size) return tl::unexpected(size.error());
   if (!std::ranges::all_of(*size, [](double side) { return side >= 1 && side <= kMostPixels; }))
     return yaml->fail_at("resolution", fmt::format("a side must be 1 to {} pixels", kMostPixels));
-  const auto distortion = distortion_of(*yaml);
+  const auto distortion = reading::yaml_distortion(*yaml, "distortion_model", "distortion_coefficients");
   if (!distortion) return tl::unexpected(distortion.error());
   return Camera{
       {{static_cast<int>((*size)[0]), static_cast<int>((*size)[1]), (*k)[0], (*k)[1], (*k)[2], (*k)[3]},

@@ -134,7 +134,7 @@ Result<void> read_truth(const std::filesystem::path& folder, const recording::Re
                   "the first column of an ICL-NUIM trajectory counts frames; it is not a time");
     }
     pose.timestamp_ns =
-        reading::frame_time_ns(pose.timestamp_ns / kNanosecondsPerSecond, options.frame_rate_hz);
+        reading::frame_time_ns(pose.timestamp_ns / kNanosecondsPerSecond, reading::frame_rate_hz(options));
     pose.T_world_camera = icl_reflect(pose.T_world_camera);
   }
   return reading::set_ground_truth(recording, std::move(*poses), **file, kFramesWithoutPose);
@@ -156,7 +156,7 @@ Result<recording::Recording> open_icl_nuim(const std::filesystem::path& folder,
   if (!calibration) return tl::unexpected(calibration.error());
   const auto frames = read_frames(folder);
   if (!frames) return tl::unexpected(frames.error());
-  reading::add_numbered_frames(*frames, "ICL-NUIM", options, recording);
+  reading::add_numbered_frames(*frames, "ICL-NUIM has no stamps", reading::frame_rate_hz(options), recording);
   if (const auto read = read_truth(folder, options, recording); !read) return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)
     return tl::unexpected(read.error());

@@ -86,7 +86,7 @@ Result<void> read_truth(const SceneFiles& files, const calibration::RigCalibrati
     if (!camera) return tl::unexpected(camera.error());
     const SE3 pose = pose_of(*camera, units);
     if (truth.empty()) compare(*camera, pose, calibration.color.pinhole, recording);
-    truth.push_back({reading::frame_time_ns(index, options.frame_rate_hz), pose});
+    truth.push_back({reading::frame_time_ns(index, reading::frame_rate_hz(options)), pose});
   }
   if (truth.empty()) return {};
   return reading::set_ground_truth(recording, std::move(truth),
@@ -125,7 +125,7 @@ Result<recording::Recording> open_icl_povray(const std::filesystem::path& folder
   const auto frames =
       reading::pair_numbered(files->color, files->depth, "scene_<nn>_<k>.png and .depth", recording);
   if (!frames) return tl::unexpected(frames.error());
-  reading::add_numbered_frames(*frames, "ICL-NUIM", options, recording);
+  reading::add_numbered_frames(*frames, "ICL-NUIM has no stamps", reading::frame_rate_hz(options), recording);
   if (const auto read = read_truth(*files, *calibration, options, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)

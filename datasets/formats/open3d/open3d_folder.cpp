@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUnitsPerMetre = 1000;
+constexpr double kSameScale = 1e-3;
+/// What is used, and what does not change how images are read.
+constexpr std::array<std::string_view, 15> kRecorderKeys = {
+    "width",        "height",       "intrinsic_matrix", "depth_scale",   "fps",
+    "color_format", "depth_format", "device_name",      "serial_number", "stream_length_usec",
+    "color_mode",   "depth_mode",   "class_name",       "version_major", "version_minor"};
 constexpr std::array<std::string_view, 2> kIntrinsics = {"intrinsic.json", "camera_intrinsic.json"};
 constexpr std::array<reading::NumberedName, 2> kColor = {{{"", ".jpg"}, {"", ".png"}}};
 constexpr std::array<reading::NumberedName, 1> kDepth = {{{"", ".png"}}};
@@ -50,16 +57,58 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   return calibration;
 }
 
-Result<double> published_units(const fs::path& folder) {
-  const fs::path file = folder / "config.json";
-  if (!io::is_named(file)) return kUnitsPerMetre;
-  const auto document = reading::read_json(file);
-  if (!document) return tl::unexpected(document.error());
-  if (!document->contains("depth_scale")) return kUnitsPerMetre;
-  const auto units = reading::json_number(*document, "depth_scale", file);
-  if (!units || *units > 0) return units;
+/// The value of `key`, from least to most; nothing if it is not there.
+Result<std::optional<double>> number_within(const nlohmann::json& document, const std::string& key,
+                                            double least, double most, const fs::path& file) {
+  if (!document.contains(key)) return std::optional<double>();
+  const auto number = reading::json_number(document, key, file);
+  if (!number) return tl::unexpected(number.error());
+  if (*number >= least && *number <= most) return std::optional(*number);
   return fail(ErrorCode::data_corrupt,
-              fmt::format("{}: depth_scale = {} (allowed: above 0)", file.string(), *units));
+              fmt::format("{}: {} = {} (allowed: {} to {})", file.string(), key, *number, least, most));
+}
+
+Result<std::optional<double>> depth_scale(const nlohmann::json& document, const fs::path& file) {
+  return number_within(document, "depth_scale", 1e-3, 1e6, file);
+}
+
+/// Properties of the recording that its files give beside the camera's matrix.
+struct Published {
+  double units_per_metre = kUnitsPerMetre;
+  std::optional<double> rate_hz;
+};
+
+/// The recorder's depth_scale is the sensor's (an L515 has 4000). That of config.json is the reconstruction
+/// system's, whose default of 1000 is often copied along with it.
+Result<Published> read_published(const fs::path& folder, recording::Recording& recording) {
+  std::optional<double> of_recorder;
+  Published published;
+  if (const auto file = intrinsics_file(folder)) {
+    const auto document = reading::read_json(*file);
+    if (!document) return tl::unexpected(document.error());
+    const auto scale = depth_scale(*document, *file);
+    if (!scale) return tl::unexpected(scale.error());
+    of_recorder = *scale;
+    const auto rate_hz = number_within(*document, "fps", 1, 1000, *file);
+    if (!rate_hz) return tl::unexpected(rate_hz.error());
+    published.rate_hz = *rate_hz;
+    reading::warn_of_unused_keys(*document, kRecorderKeys, *file, recording.warnings);
+  }
+  std::optional<double> of_config;
+  if (const fs::path file = folder / "config.json"; io::is_named(file)) {
+    const auto document = reading::read_json(file);
+    if (!document) return tl::unexpected(document.error());
+    const auto scale = depth_scale(*document, file);
+    if (!scale) return tl::unexpected(scale.error());
+    of_config = *scale;
+  }
+  if (of_recorder && of_config && std::abs(*of_recorder / *of_config - 1) > kSameScale)
+    recording.warnings.push_back(fmt::format(
+        "{}: depth_scale is {} in {} and {} in config.json; the former is used, which the recorder "
+        "wrote (--depth-units replaces it)",
+        folder.string(), *of_recorder, intrinsics_file(folder)->filename().string(), *of_config));
+  published.units_per_metre = of_recorder.value_or(of_config.value_or(kUnitsPerMetre));
+  return published;
 }
 
 /// frame_times.txt by number.
@@ -82,8 +131,7 @@ Result<std::map<std::int64_t, std::int64_t>> read_times(const fs::path& file) {
   return time_ns;
 }
 
-Result<void> add_frames(const fs::path& folder, const recording::ReadOptions& options,
-                        recording::Recording& recording) {
+Result<void> add_frames(const fs::path& folder, double rate_hz, recording::Recording& recording) {
   const auto color = reading::numbered_files(folder / "color", kColor);
   if (!color) return tl::unexpected(color.error());
   const auto depth = reading::numbered_files(folder / "depth", kDepth);
@@ -93,7 +141,7 @@ Result<void> add_frames(const fs::path& folder, const recording::ReadOptions& op
   if (!frames) return tl::unexpected(frames.error());
   const fs::path times = folder / "frame_times.txt";
   if (!io::is_named(times)) {
-    reading::add_numbered_frames(*frames, "Open3D's folder", options, recording);
+    reading::add_numbered_frames(*frames, "Open3D's folder has no stamps", rate_hz, recording);
     return {};
   }
   const auto time_ns = read_times(times);
@@ -123,14 +171,15 @@ Result<recording::Recording> open_open3d(const fs::path& folder, const recording
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return published_calibration(folder); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto units = published_units(folder);
-  if (!units) return tl::unexpected(units.error());
-  if (const auto added = add_frames(folder, options, recording); !added) return tl::unexpected(added.error());
+  const auto published = read_published(folder, recording);
+  if (!published) return tl::unexpected(published.error());
+  const double rate_hz = reading::frame_rate_hz(options, published->rate_hz);
+  if (const auto added = add_frames(folder, rate_hz, recording); !added) return tl::unexpected(added.error());
   if (const auto read = reading::read_ground_truth_beside(folder, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)
     return tl::unexpected(read.error());
-  return reading::with_png_images(std::move(recording), std::move(*calibration), *units);
+  return reading::with_png_images(std::move(recording), std::move(*calibration), published->units_per_metre);
 }
 
 }  // namespace fusebench::formats::open3d

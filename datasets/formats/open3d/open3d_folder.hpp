@@ -15,9 +15,11 @@ namespace fusebench::formats::open3d {
 
 /// color/<k>.jpg (or .png) and depth/<k>.png, registered to colour, are paired by number. The camera is that
 /// of intrinsic.json (width, height, intrinsic_matrix column by column), unless the options or
-/// calibration.toml say otherwise. Value of one metre: depth_scale of config.json, 1000 without. Times:
-/// frame_times.txt ("number seconds") if it is there, else frame k is at k / frame_rate_hz. groundtruth.txt
-/// and imu.csv are taken from beside. Errors: configuration, data_missing, data_corrupt.
+/// calibration.toml say otherwise. Value of one metre: depth_scale of intrinsic.json, else that of
+/// config.json, else 1000. Times: frame_times.txt ("number seconds") if it is there, else frame k is at k /
+/// rate, the rate being the options', fps of intrinsic.json, or 30 Hz. Other keys of intrinsic.json are named
+/// in a warning. groundtruth.txt and imu.csv are taken from beside. Errors: configuration, data_missing,
+/// data_corrupt.
 [[nodiscard]] Result<recording::Recording> open_open3d(const std::filesystem::path& folder,
                                                        const recording::ReadOptions& options);
 

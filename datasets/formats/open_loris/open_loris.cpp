@@ -43,11 +43,10 @@ Result<calibration::CalibratedCamera> color_camera(const reading::SensorYaml& ya
   calibration::CalibratedCamera camera;
   camera.pinhole = {static_cast<int>(*width), static_cast<int>(*height), (*k)[0], (*k)[2], (*k)[1], (*k)[3]};
   camera.timing = calibration::kUnknownTiming;
-  if (const std::string key = sensor + ".distortion_coefficients.data"; yaml.has(key)) {
-    const auto d = yaml.numbers(key, 4).or_else([&](const Error&) { return yaml.numbers(key, 5); });
-    if (!d) return tl::unexpected(d.error());
-    camera.distortion = {(*d)[0], (*d)[1], (*d)[2], (*d)[3], d->size() > 4 ? (*d)[4] : 0};
-  }
+  const auto distortion =
+      reading::yaml_distortion(yaml, sensor + ".distortion_model", sensor + ".distortion_coefficients.data");
+  if (!distortion) return tl::unexpected(distortion.error());
+  camera.distortion = *distortion;
   return camera;
 }
 

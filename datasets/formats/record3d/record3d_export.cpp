@@ -60,7 +60,7 @@ Result<calibration::RigCalibration> calibration_of(const Record3dMetadata& metad
 
 /// Lists of metadata.json are by the number of the frame.
 Result<void> add_frames(const std::vector<reading::NumberedFrame>& frames, const Record3dMetadata& metadata,
-                        const fs::path& file, recording::ReadOptions options,
+                        const fs::path& file, const recording::ReadOptions& options,
                         recording::Recording& recording) {
   const auto count = static_cast<std::size_t>(frames.back().index) + 1;
   const auto lacks = [&](const char* key, std::size_t length) {
@@ -68,8 +68,8 @@ Result<void> add_frames(const std::vector<reading::NumberedFrame>& frames, const
                                                      file.string(), key, length, frames.back().index));
   };
   if (metadata.timestamps_ns.empty()) {
-    options.frame_rate_hz = metadata.fps.value_or(options.frame_rate_hz);
-    reading::add_numbered_frames(frames, "Record3D's export", options, recording);
+    reading::add_numbered_frames(frames, "Record3D's export has no stamps",
+                                 reading::frame_rate_hz(options, metadata.fps), recording);
   } else if (metadata.timestamps_ns.size() < count) {
     return lacks("frameTimestamps", metadata.timestamps_ns.size());
   } else {
@@ -110,7 +110,7 @@ Result<recording::Recording> open_record3d(const fs::path& folder, const recordi
   recording::Recording recording = recording::named_recording(folder, "record3d");
   if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
   const fs::path place = export_folder(folder);
-  const auto metadata = read_record3d_metadata(place / "metadata.json");
+  const auto metadata = read_record3d_metadata(place / "metadata.json", recording.warnings);
   if (!metadata) return tl::unexpected(metadata.error());
   const auto frames = list_frames(place, recording);
   if (!frames) return tl::unexpected(frames.error());

@@ -2,16 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 
+#include "datasets/calibration/frame_cameras.hpp"
 #include "datasets/reading/json_file.hpp"
 
 namespace fusebench::formats::record3d {
 
 namespace {
 
+/// What is used, and what does not change how images are read.
+constexpr std::array<std::string_view, 11> kKnownKeys = {"w",
+                                                         "h",
+                                                         "K",
+                                                         "fps",
+                                                         "dw",
+                                                         "dh",
+                                                         "initPose",
+                                                         "poses",
+                                                         "cameraType",
+                                                         "perFrameIntrinsicCoeffs",
+                                                         "frameTimestamps"};
 constexpr double kMost_m = 1e7;
 constexpr double kMost_s = 1e9;
 
@@ -64,15 +80,45 @@ Result<std::vector<std::int64_t>> read_times(const nlohmann::json& document,
   return times_ns;
 }
 
+/// perFrameIntrinsicCoeffs, a list of [fx, fy, cx, cy]: the camera refocuses.
+Result<void> take_frame_cameras(const nlohmann::json& document, const std::filesystem::path& file,
+                                Record3dMetadata& metadata, std::vector<std::string>& warnings) {
+  constexpr const char* kKey = "perFrameIntrinsicCoeffs";
+  const auto found = document.find(kKey);
+  if (found == document.end() || found->empty()) return {};
+  if (!found->is_array()) return wrong(file, fmt::format("{} must be a list", kKey));
+  std::vector<calibration::FrameCamera> cameras;
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    const std::string key = fmt::format("{}[{}]", kKey, k);
+    const auto c = reading::json_numbers({{key, (*found)[k]}}, key, 4, file);
+    if (!c) return tl::unexpected(c.error());
+    if (!((*c)[0] > 0 && (*c)[1] > 0)) return wrong(file, key + ": focal lengths must be above 0");
+    PinholeCamera camera = metadata.camera;
+    camera.fx_px = (*c)[0];
+    camera.fy_px = (*c)[1];
+    camera.cx_px = (*c)[2];
+    camera.cy_px = (*c)[3];
+    cameras.push_back({static_cast<std::int64_t>(k), camera});
+  }
+  const calibration::CommonCamera common = calibration::common_camera(cameras);
+  if (!common.change.empty()) warnings.push_back(fmt::format("{}: {}", file.string(), common.change));
+  metadata.camera = common.camera;
+  return {};
+}
+
 }  // namespace
 
-Result<Record3dMetadata> read_record3d_metadata(const std::filesystem::path& file) {
+Result<Record3dMetadata> read_record3d_metadata(const std::filesystem::path& file,
+                                                std::vector<std::string>& warnings) {
   const auto document = reading::read_json(file);
   if (!document) return tl::unexpected(document.error());
   const auto camera = reading::json_camera(*document, {"w", "h", "K"}, file);
   if (!camera) return tl::unexpected(camera.error());
   Record3dMetadata metadata;
   metadata.camera = *camera;
+  if (const auto taken = take_frame_cameras(*document, file, metadata, warnings); !taken)
+    return tl::unexpected(taken.error());
+  reading::warn_of_unused_keys(*document, kKnownKeys, file, warnings);
   if (document->contains("fps")) {
     const auto fps = reading::json_number(*document, "fps", file);
     if (!fps) return tl::unexpected(fps.error());

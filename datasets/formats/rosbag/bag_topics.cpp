@@ -63,6 +63,7 @@ class Collector {
     if (is_new) {
       topic.kind = kind_of(*image);
       topic.is_compressed = is_compressed;
+      topic.is_grey = is_grey_encoding(image->encoding);
       topic.frame_id = image->header.frame_id;
     }
     const std::int64_t stamp_ns = image->header.timestamp_ns;
@@ -109,12 +110,14 @@ std::vector<std::string_view> components_of(std::string_view topic) {
 
 /// How well a topic's name fits; below 0: not at all. Of equals the first by name is taken.
 int fitness(std::string_view topic, const ImageTopic& images, ImageKind kind) {
-  if (images.kind != kind || contains(topic, "infra") || contains(topic, "/ir") || contains(topic, "fisheye"))
+  if (images.kind != kind || contains(topic, "infra") || contains(topic, "/ir") ||
+      contains(topic, "fisheye") || contains(topic, "confidence"))
     return -1;
   const bool named = kind == ImageKind::color ? contains(topic, "color") || contains(topic, "rgb")
                                               : contains(topic, "depth");
   const bool aligned = contains(topic, "aligned") || contains(topic, "registered");
-  return (named ? 4 : 0) + (kind == ImageKind::depth && aligned ? 2 : 0) + (images.is_compressed ? 0 : 1);
+  return (images.is_grey ? 0 : 8) + (named ? 4 : 0) + (kind == ImageKind::depth && aligned ? 2 : 0) +
+         (images.is_compressed ? 0 : 1);
 }
 
 std::optional<std::string> best_topic(const BagTopics& topics, ImageKind kind) {
@@ -170,11 +173,11 @@ Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesyste
   return fail(ErrorCode::data_missing,
               fmt::format("{}: no topic with {} images; there {}", file.string(), color ? "depth" : "colour",
                           list_of_images(topics)),
-              "needed are rgb8, bgr8 or JPEG for colour, and 16UC1 or 32FC1 for depth");
+              "needed are rgb8, bgr8, mono8 or JPEG for colour, and 16UC1 or 32FC1 for depth");
 }
 
-std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& topics,
-                                                             std::string_view image_topic) {
+Result<std::optional<calibration::CalibratedCamera>> camera_of_topic(const BagTopics& topics,
+                                                                     std::string_view image_topic) {
   const std::vector<std::string_view> image = components_of(image_topic);
   for (const auto& [topic, camera] : topics.cameras) {
     const std::vector<std::string_view> info = components_of(topic);
@@ -182,9 +185,14 @@ std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& to
     const auto common = static_cast<std::size_t>(end - info.begin());
     // ".../color/camera_info", and ".../Color_0/info/camera_info" of RealSense's own recorder.
     const std::size_t own = info.size() >= 2 && info[info.size() - 2] == "info" ? 2 : 1;
-    if (info.size() > own && common >= info.size() - own) return camera;
+    if (info.size() > own && common >= info.size() - own) {
+      if (camera) return *camera;
+      Error error = camera.error();
+      error.message = fmt::format("{}: {}", printable(topic, 100), error.message);
+      return tl::unexpected(std::move(error));
+    }
   }
-  return std::nullopt;
+  return std::optional<calibration::CalibratedCamera>();
 }
 
 }  // namespace fusebench::formats::rosbag

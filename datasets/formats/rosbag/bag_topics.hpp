@@ -24,6 +24,7 @@ struct StoredMessage {
 struct ImageTopic {
   ImageKind kind = ImageKind::other;
   bool is_compressed = false;
+  bool is_grey = false;
   std::string frame_id;
   std::vector<StoredMessage> images;  ///< in strictly increasing time
   std::size_t repeated = 0;           ///< images with the stamp of another, which are left out
@@ -37,7 +38,8 @@ struct ImuTopic {
 /// By topic.
 struct BagTopics {
   std::map<std::string, ImageTopic> images;
-  std::map<std::string, calibration::CalibratedCamera> cameras;  ///< the first camera_info of each
+  /// The first camera_info of each; an error for one that cannot be used.
+  std::map<std::string, Result<calibration::CalibratedCamera>> cameras;
   std::map<std::string, ImuTopic> imus;
   std::map<std::string, SE3> extrinsics;
   calibration::FrameTree frames;  ///< of /tf_static
@@ -47,7 +49,8 @@ struct BagTopics {
 /// Errors: those of read_bag; data_corrupt (a message that is not of its type).
 [[nodiscard]] Result<BagTopics> read_topics(const std::filesystem::path& file);
 
-/// The topic of colour, and of depth: aligned to colour before others, pictures of infrared cameras never.
+/// The topic of colour, and of depth: aligned to colour before others, grey
+/// images for colour only if there is no colour, images of infrared cameras never.
 /// Errors: data_missing (there is none; the message lists what there is), data_corrupt (the bag is cut off).
 struct ChosenTopics {
   std::string color;
@@ -55,8 +58,9 @@ struct ChosenTopics {
 };
 [[nodiscard]] Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesystem::path& file);
 
-/// The camera_info beside an image topic; nothing if there is none.
-[[nodiscard]] std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& topics,
-                                                                           std::string_view image_topic);
+/// The camera_info of an image topic; nothing if there is none. Error data_corrupt: its distortion is not
+/// supported.
+[[nodiscard]] Result<std::optional<calibration::CalibratedCamera>> camera_of_topic(
+    const BagTopics& topics, std::string_view image_topic);
 
 }  // namespace fusebench::formats::rosbag

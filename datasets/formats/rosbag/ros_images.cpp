@@ -72,17 +72,20 @@ Result<ColorImage> color_of(const ImageMessage& image, const std::string& name) 
   if (!is_color_encoding(image.encoding))
     return wrong(name,
                  fmt::format("encoding '{}' (read are {})", printable(image.encoding), kColorEncodings));
-  const int pixel_bytes = image.encoding.find('a') == std::string::npos ? 3 : 4;
+  const bool grey = is_grey_encoding(image.encoding);
+  const bool alpha = image.encoding.find('a') != std::string::npos;
+  const int pixel_bytes = grey ? 1 : (alpha ? 4 : 3);
   if (const auto fits = check_rows(image, static_cast<std::size_t>(pixel_bytes), name); !fits)
     return tl::unexpected(fits.error());
   const bool blue_first = image.encoding.starts_with("bgr");
+  const std::array<int, 3> channels = grey         ? std::array{0, 0, 0}
+                                      : blue_first ? std::array{2, 1, 0}
+                                                   : std::array{0, 1, 2};
   ColorImage color(static_cast<int>(image.width_px), static_cast<int>(image.height_px));
   for (int y = 0; y < color.height; ++y) {
     const char* pixel = row_of(image, y);
     for (int x = 0; x < color.width; ++x, pixel += pixel_bytes) {
-      const auto channel = [&](int c) { return static_cast<std::uint8_t>(pixel[c]); };
-      color(x, y) =
-          blue_first ? Rgb{channel(2), channel(1), channel(0)} : Rgb{channel(0), channel(1), channel(2)};
+      for (std::size_t c = 0; c < 3; ++c) color(x, y)[c] = static_cast<std::uint8_t>(pixel[channels[c]]);
     }
   }
   return color;

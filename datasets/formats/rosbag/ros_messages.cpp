@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <vector>
 
+#include "datasets/calibration/distortion_model.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 
 namespace fusebench::formats::rosbag {
@@ -64,8 +66,11 @@ bool is_compressed_color(std::string_view encoding) {
 
 }  // namespace
 
+bool is_grey_encoding(std::string_view encoding) { return encoding == "mono8"; }
+
 bool is_color_encoding(std::string_view encoding) {
-  return encoding == "rgb8" || encoding == "bgr8" || encoding == "rgba8" || encoding == "bgra8";
+  return encoding == "rgb8" || encoding == "bgr8" || encoding == "rgba8" || encoding == "bgra8" ||
+         is_grey_encoding(encoding);
 }
 
 bool is_depth_encoding(std::string_view encoding) {
@@ -114,33 +119,31 @@ std::optional<ImuMessage> imu_message(std::string_view data) {
   return imu;
 }
 
-std::optional<calibration::CalibratedCamera> camera_info_message(std::string_view data) {
+std::optional<Result<calibration::CalibratedCamera>> camera_info_message(std::string_view data) {
+  constexpr std::uint32_t kMostCoefficients = 64;
   Values values(data);
   static_cast<void>(values.header());
   const auto height = values.number<std::uint32_t>();
   const auto width = values.number<std::uint32_t>();
   const std::string model(values.bytes());
   const auto count = values.number<std::uint32_t>();
-  std::array<double, 5> d{};
-  for (std::uint32_t i = 0; i < count && !values.failed(); ++i) {
-    const auto value = values.number<double>();
-    if (i < d.size()) d[i] = value;
-    if (i >= d.size() && value != 0) return std::nullopt;  // a rational model
-  }
+  if (count > kMostCoefficients) return std::nullopt;
+  std::vector<double> d(count);
+  for (double& value : d) value = values.number<double>();
   std::array<double, 9> K{};
   for (double& value : K) value = values.number<double>();
   const auto possible = [](double value) { return std::abs(value) <= kMostParameter; };
-  const bool plumb_bob = model.empty() || model == "plumb_bob" || d == std::array<double, 5>{} ||
-                         model == "Brown Conrady" || model == "brown_conrady";
-  if (values.failed() || !plumb_bob || !(K[0] > 0 && K[4] > 0) || !std::ranges::all_of(K, possible) ||
+  if (values.failed() || !(K[0] > 0 && K[4] > 0) || !std::ranges::all_of(K, possible) ||
       !std::ranges::all_of(d, possible) || width < 1 || height < 1 || width > kMostPixelsASide ||
       height > kMostPixelsASide)
     return std::nullopt;
+  const auto distortion = calibration::distortion_of_model(model, d);
+  if (!distortion) return Result<calibration::CalibratedCamera>(tl::unexpected(distortion.error()));
   calibration::CalibratedCamera camera;
   camera.pinhole = {static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5]};
-  camera.distortion = {d[0], d[1], d[2], d[3], d[4]};
+  camera.distortion = *distortion;
   camera.timing = calibration::kUnknownTiming;
-  return camera;
+  return Result<calibration::CalibratedCamera>(camera);
 }
 
 std::optional<std::vector<TransformMessage>> tf_message(std::string_view data) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "core/base/geometry.hpp"
 #include "core/base/types.hpp"
 #include "datasets/calibration/camera_model.hpp"
@@ -47,22 +48,23 @@ struct TransformMessage {
 [[nodiscard]] std::optional<ImageMessage> image_message(std::string_view data);
 [[nodiscard]] std::optional<ImageMessage> compressed_image_message(std::string_view data);
 [[nodiscard]] std::optional<ImuMessage> imu_message(std::string_view data);
-/// sensor_msgs/CameraInfo: K and a plumb-bob distortion.
-[[nodiscard]] std::optional<calibration::CalibratedCamera> camera_info_message(std::string_view data);
+/// sensor_msgs/CameraInfo: K and distortion. Error: that of calibration::distortion_of_model().
+[[nodiscard]] std::optional<Result<calibration::CalibratedCamera>> camera_info_message(std::string_view data);
 /// tf2_msgs/TFMessage.
 [[nodiscard]] std::optional<std::vector<TransformMessage>> tf_message(std::string_view data);
 /// realsense2_camera/Extrinsics: the rotation column by column, then the translation in metres.
 [[nodiscard]] std::optional<SE3> extrinsics_message(std::string_view data);
 
-/// What an image is of, by its encoding: "rgb8", "bgr8" and the like, JPEG or PNG; "16UC1", "mono16",
-/// "32FC1", compressed depth. Others are neither.
+/// What an image is of, by its encoding: "rgb8", "bgr8", "mono8" and the like, JPEG or PNG; "16UC1",
+/// "mono16", "32FC1", compressed depth. Others are neither.
 enum class ImageKind { color, depth, other };
 [[nodiscard]] ImageKind kind_of(const ImageMessage& image);
 
 /// Of images that are not compressed.
-inline constexpr std::string_view kColorEncodings = "rgb8, bgr8, rgba8, bgra8";
+inline constexpr std::string_view kColorEncodings = "rgb8, bgr8, rgba8, bgra8, mono8";
 inline constexpr std::string_view kDepthEncodings = "16UC1, mono16, 32FC1";
 [[nodiscard]] bool is_color_encoding(std::string_view encoding);
+[[nodiscard]] bool is_grey_encoding(std::string_view encoding);  ///< one of the above
 [[nodiscard]] bool is_depth_encoding(std::string_view encoding);
 /// compressed_depth_image_transport's, with 12 bytes before the image.
 [[nodiscard]] bool is_compressed_depth(std::string_view encoding);

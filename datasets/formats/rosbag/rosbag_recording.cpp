@@ -44,6 +44,11 @@ bool is_aligned(const std::string& topic) {
   return topic.find("aligned") != std::string::npos || topic.find("registered") != std::string::npos;
 }
 
+Error in_bag(const fs::path& file, Error error) {
+  error.message = fmt::format("{}: {}", file.string(), error.message);
+  return error;
+}
+
 std::optional<SE3> color_from_depth(const BagTopics& topics, const ChosenTopics& chosen) {
   for (const auto& [topic, T] : topics.extrinsics) {
     if (topic.find("depth_to_color") != std::string::npos) return T;
@@ -55,14 +60,21 @@ std::optional<SE3> color_from_depth(const BagTopics& topics, const ChosenTopics&
 
 Result<std::optional<calibration::DepthCamera>> depth_camera(const BagTopics& topics,
                                                              const ChosenTopics& chosen,
-                                                             const PinholeCamera& color,
-                                                             const fs::path& file) {
-  const auto info = camera_of_topic(topics, chosen.depth);
+                                                             const PinholeCamera& color, const fs::path& file,
+                                                             std::vector<std::string>& warnings) {
+  const auto found = camera_of_topic(topics, chosen.depth);
+  if (!found && !is_aligned(chosen.depth)) return tl::unexpected(in_bag(file, found.error()));
+  const auto info = found.value_or(std::nullopt);
   const bool one_camera = info && same_pinhole(info->pinhole, color) &&
                           topics.images.at(chosen.color).frame_id == topics.images.at(chosen.depth).frame_id;
   if (is_aligned(chosen.depth) || one_camera) return std::nullopt;
   const auto T_color_depth = color_from_depth(topics, chosen);
-  if (info && T_color_depth) return calibration::DepthCamera{info->pinhole, *T_color_depth};
+  if (info && T_color_depth) {
+    if (!info->distortion.is_zero())
+      warnings.push_back(fmt::format("{}: the distortion of the depth camera ({}) is not used", file.string(),
+                                     printable(chosen.depth, 100)));
+    return calibration::DepthCamera{info->pinhole, *T_color_depth};
+  }
   return fail(
       ErrorCode::data_missing,
       fmt::format("{}: depth ({}) is not aligned to colour, and the bag has no {}", file.string(),
@@ -74,8 +86,11 @@ Result<std::optional<calibration::DepthCamera>> depth_camera(const BagTopics& to
 }
 
 Result<calibration::RigCalibration> calibration_of(const BagTopics& topics, const ChosenTopics& chosen,
-                                                   const std::string& imu_frame, const fs::path& file) {
-  const auto color = camera_of_topic(topics, chosen.color);
+                                                   const std::string& imu_frame, const fs::path& file,
+                                                   std::vector<std::string>& warnings) {
+  const auto found = camera_of_topic(topics, chosen.color);
+  if (!found) return tl::unexpected(in_bag(file, found.error()));
+  const auto& color = *found;
   if (!color)
     return fail(ErrorCode::configuration,
                 fmt::format("{}: no camera_info beside {} says what camera it is of", file.string(),
@@ -84,7 +99,7 @@ Result<calibration::RigCalibration> calibration_of(const BagTopics& topics, cons
   calibration::RigCalibration calibration;
   calibration.color = *color;
   calibration.source = "camera_info of the bag";
-  auto depth = depth_camera(topics, chosen, color->pinhole, file);
+  auto depth = depth_camera(topics, chosen, color->pinhole, file, warnings);
   if (!depth) return tl::unexpected(depth.error());
   calibration.depth = std::move(*depth);
   const auto T_imu_color = topics.frames.transform(imu_frame, topics.images.at(chosen.color).frame_id);
@@ -174,7 +189,8 @@ Result<recording::Recording> open_rosbag(const fs::path& place, const recording:
   if (!imu_frame) return tl::unexpected(imu_frame.error());
   const fs::path folder = file->parent_path();
   auto calibration = recording::choose_calibration(
-      folder, options, [&] { return calibration_of(*topics, *chosen, *imu_frame, *file); }, recording);
+      folder, options,
+      [&] { return calibration_of(*topics, *chosen, *imu_frame, *file, recording.warnings); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
   auto images = pair_topics(*file, *topics, *chosen, options, recording);
   if (!images) return tl::unexpected(images.error());

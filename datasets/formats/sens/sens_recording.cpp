@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "datasets/formats/sens/sens_imu.hpp"
+#include "datasets/formats/sens/sens_stamps.hpp"
 #include "datasets/image_logs/file_part.hpp"
 #include "datasets/image_logs/sens_log.hpp"
 #include "datasets/images/image_files.hpp"
@@ -18,7 +18,6 @@
 #include "datasets/reading/numbered_frames.hpp"
 #include "datasets/reading/side_files.hpp"
 #include "datasets/reading/single_file.hpp"
-#include "datasets/reading/time_unit.hpp"
 
 namespace fusebench::formats::sens {
 
@@ -91,41 +90,51 @@ Result<calibration::RigCalibration> calibration_of(const SensFile& file) {
   return calibration;
 }
 
-/// Nanoseconds of a unit in which the stamps count; nothing if they do not rise, or not like those of images.
-std::optional<std::int64_t> nanoseconds_per_unit(const std::vector<SensFrameParts>& frames) {
-  std::vector<double> spacings;
-  for (std::size_t k = 1; k < frames.size(); ++k) {
-    if (frames[k].color_timestamp <= frames[k - 1].color_timestamp) return std::nullopt;
-    spacings.push_back(static_cast<double>(frames[k].color_timestamp - frames[k - 1].color_timestamp));
-  }
-  if (spacings.empty()) return std::nullopt;
-  const auto middle = spacings.begin() + std::ssize(spacings) / 2;
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  const auto unit = reading::unit_of_spacing(*middle, reading::kImageSpacing);
-  if (!unit) return std::nullopt;
-  const auto factor = std::llround(std::pow(10.0, static_cast<int>(unit->unit)));
-  const auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / 4 / factor);
-  const bool fits = std::ranges::all_of(frames, [&](const SensFrameParts& frame) {
-    return frame.color_timestamp <= most && frame.depth_timestamp <= most;
-  });
-  return fits ? std::optional<std::int64_t>(factor) : std::nullopt;
+/// The unit of the stamps; frames whose stamps cannot be used are left out. Nothing if there are no stamps
+/// that can, with the reason.
+ImageStamps take_stamps(SensFile& file, recording::Recording& recording) {
+  std::vector<std::uint64_t> stamps;
+  for (const SensFrameParts& frame : file.frames) stamps.push_back(frame.color_timestamp);
+  ImageStamps read = image_stamps(stamps);
+  if (!read.unit_ns || read.frames.size() == stamps.size()) return read;
+  std::size_t first = 0;
+  while (first < read.frames.size() && read.frames[first] == first) ++first;
+  recording.warnings.push_back(fmt::format(
+      "{}: {} of {} frames are not used, since their stamps do not rise with the others' (the first "
+      "is frame {} with {})",
+      file.path.string(), stamps.size() - read.frames.size(), stamps.size(), first, stamps[first]));
+  std::vector<SensFrameParts> kept;
+  for (const std::size_t frame : read.frames) kept.push_back(std::move(file.frames[frame]));
+  file.frames = std::move(kept);
+  return read;
 }
 
-void add_frames(const SensFile& file, std::optional<std::int64_t> unit_ns,
-                const recording::ReadOptions& options, recording::Recording& recording) {
-  if (!unit_ns) {
+/// A depth image is taken at the time of colour where its stamp is 0 (some writers stamp colour alone) or far
+/// from colour's.
+void add_frames(const SensFile& file, const ImageStamps& stamps, const recording::ReadOptions& options,
+                recording::Recording& recording) {
+  if (!stamps.unit_ns) {
     std::vector<reading::NumberedFrame> numbered(file.frames.size());
     for (std::size_t k = 0; k < numbered.size(); ++k) numbered[k].index = static_cast<std::int64_t>(k);
-    reading::add_numbered_frames(numbered, "the .sens file", options, recording);
+    reading::add_numbered_frames(numbered, stamps.reason, reading::frame_rate_hz(options), recording);
     return;
   }
+  constexpr std::int64_t kFar_ns = 1'000'000'000;
+  const std::uint64_t far = static_cast<std::uint64_t>(kFar_ns / *stamps.unit_ns);
+  std::size_t odd = 0;
   for (const SensFrameParts& frame : file.frames) {
-    const std::int64_t color_ns = static_cast<std::int64_t>(frame.color_timestamp) * *unit_ns;
-    // Some writers stamp colour alone.
-    const std::int64_t depth_ns =
-        frame.depth_timestamp == 0 ? color_ns : static_cast<std::int64_t>(frame.depth_timestamp) * *unit_ns;
+    const auto [least, most] = std::minmax(frame.color_timestamp, frame.depth_timestamp);
+    const bool is_far = most - least > far;
+    if (is_far && frame.depth_timestamp != 0) ++odd;
+    const std::int64_t color_ns = static_cast<std::int64_t>(frame.color_timestamp) * *stamps.unit_ns;
+    const std::int64_t depth_ns = is_far || frame.depth_timestamp == 0
+                                      ? color_ns
+                                      : static_cast<std::int64_t>(frame.depth_timestamp) * *stamps.unit_ns;
     recording.frames.push_back({color_ns, depth_ns, color_ns, depth_ns, {}, {}});
   }
+  if (odd > 0)
+    recording.warnings.push_back(fmt::format(
+        "{}: {} depth stamps are more than 1 s from colour's and are not used", file.path.string(), odd));
 }
 
 /// Poses are the depth camera's.
@@ -196,6 +205,7 @@ Result<recording::Recording> open_sens(const fs::path& place, const recording::R
   recording.name = path->stem().string();
   auto read = read_file(*path);
   if (!read) return tl::unexpected(read.error());
+  const ImageStamps stamps = take_stamps(*read, recording);
   const auto file = std::make_shared<const SensFile>(std::move(*read));
   if (file->header.depth_codec == image_logs::SensDepthCodec::occipital)
     return fail(ErrorCode::data_corrupt,
@@ -205,14 +215,16 @@ Result<recording::Recording> open_sens(const fs::path& place, const recording::R
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return calibration_of(*file); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto unit_ns = nanoseconds_per_unit(file->frames);
-  add_frames(*file, unit_ns, options, recording);
+  add_frames(*file, stamps, options, recording);
   if (const auto truth = read_truth(*file, *calibration, recording); !truth)
     return tl::unexpected(truth.error());
-  if (file->imu.empty() || !unit_ns) {
+  if (file->imu.empty() || !stamps.unit_ns) {
+    if (!file->imu.empty())
+      recording.warnings.push_back(fmt::format("{}: {} inertial frames are not used: {}", path->string(),
+                                               file->imu.size(), stamps.reason));
     if (const auto imu = reading::read_imu_beside(folder, recording); !imu)
       return tl::unexpected(imu.error());
-  } else if (const auto imu = take_imu_frames(*path, file->imu, *unit_ns, recording); !imu) {
+  } else if (const auto imu = take_imu_frames(*path, file->imu, *stamps.unit_ns, recording); !imu) {
     return tl::unexpected(imu.error());
   }
   const double units = reading::settled_depth_units(*calibration, file->header.depth_units_per_metre);

@@ -15,8 +15,9 @@ namespace fusebench::formats::sens {
 
 /// Opens such a file. Colour is JPEG, PNG or plain, depth a zlib stream or plain. Calibration: the options',
 /// calibration.toml beside the file, else the file's own; depth of other intrinsics, size or place is
-/// registered to colour. Stamps: in the unit that their spacing tells; where they do not rise, as in files
-/// that have none, frame k is at k / frame_rate_hz, with a note. Poses are BundleFusion's estimate of the
+/// registered to colour. Stamps: in the unit of their spacing; frames whose stamps do not rise with
+/// the others' are left out, with a warning. Where a third and more do not rise, or there are no stamps,
+/// frame k is at k / frame rate, with a note that has the reason. Poses are BundleFusion's estimate of the
 /// same recording, and labelled so; without any, groundtruth.txt beside the file is used. Inertial frames:
 /// those of the file, else imu.csv beside it. Errors: configuration, data_missing, data_corrupt (what
 /// sens_log.hpp refuses, depth in the occipital codec).

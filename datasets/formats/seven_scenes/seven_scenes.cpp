@@ -64,7 +64,7 @@ Result<void> read_truth(const std::filesystem::path& folder, const calibration::
     if (!*T_world_depth) ++lost;
     if (*T_world_depth)
       truth.push_back(
-          {reading::frame_time_ns(index, options.frame_rate_hz), **T_world_depth * T_depth_color});
+          {reading::frame_time_ns(index, reading::frame_rate_hz(options)), **T_world_depth * T_depth_color});
   }
   if (lost > 0) {
     recording.warnings.push_back(
@@ -96,7 +96,7 @@ Result<recording::Recording> open_seven_scenes(const std::filesystem::path& fold
   const auto frames = reading::pair_numbered(
       *color, *depth, "frame-<k>.color.png (or .jpg) and frame-<k>.depth.png", recording);
   if (!frames) return tl::unexpected(frames.error());
-  reading::add_numbered_frames(*frames, "7-Scenes", options, recording);
+  reading::add_numbered_frames(*frames, "7-Scenes has no stamps", reading::frame_rate_hz(options), recording);
   if (const auto read = read_truth(folder, *calibration, options, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/io/input_file.hpp"
+#include "datasets/calibration/frame_cameras.hpp"
 #include "datasets/calibration/scaled_camera.hpp"
 #include "datasets/formats/stray/stray_tables.hpp"
 #include "datasets/images/file_content.hpp"
@@ -73,10 +74,28 @@ Result<StrayImages> list_images(const fs::path& folder) {
   return StrayImages{*color, *depth, *color_size, {depth_size->width, depth_size->height}};
 }
 
-/// K of the video, scaled to the size of the extracted images.
-Result<calibration::RigCalibration> published_calibration(const fs::path& folder, const StrayImages& images) {
-  const fs::path file = folder / "camera_matrix.csv";
-  auto camera = reading::read_camera_matrix(file);
+/// The one camera of all frames whose rows in odometry.csv have intrinsics; nothing if none has. A warning
+/// says if they differ.
+std::optional<PinholeCamera> camera_of_frames(const fs::path& folder, const std::vector<StrayFrame>& odometry,
+                                              recording::Recording& recording) {
+  std::vector<calibration::FrameCamera> cameras;
+  for (const StrayFrame& frame : odometry) {
+    if (frame.camera) cameras.push_back({frame.index, *frame.camera});
+  }
+  if (cameras.empty()) return std::nullopt;
+  const calibration::CommonCamera common = calibration::common_camera(cameras);
+  if (!common.change.empty())
+    recording.warnings.push_back(fmt::format("{}: {}", (folder / "odometry.csv").string(), common.change));
+  return common.camera;
+}
+
+/// The video's camera, scaled to the size of the extracted images: that of the frames, else that of
+/// camera_matrix.csv, which is the last frame's.
+Result<calibration::RigCalibration> published_calibration(const fs::path& folder,
+                                                          const std::optional<PinholeCamera>& of_frames,
+                                                          const StrayImages& images) {
+  const fs::path file = folder / (of_frames ? "odometry.csv" : "camera_matrix.csv");
+  auto camera = of_frames ? Result<PinholeCamera>(*of_frames) : reading::read_camera_matrix(file);
   if (!camera) return tl::unexpected(camera.error());
   const images::ImageSize size = images.color_size;
   const double aspect = static_cast<double>(size.height_px) / size.width_px;
@@ -100,7 +119,7 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
     calibration.depth = calibration::DepthCamera{
         calibration::scaled_camera(*camera, images.depth_size.width_px, images.depth_size.height_px), SE3{}};
   }
-  calibration.source = "camera_matrix.csv of the recording, scaled to the images";
+  calibration.source = file.filename().string() + " of the recording, scaled to the images";
   return calibration;
 }
 
@@ -188,12 +207,13 @@ bool is_stray(const fs::path& folder) {
 Result<recording::Recording> open_stray(const fs::path& folder, const recording::ReadOptions& options) {
   recording::Recording recording = recording::named_recording(folder, "stray");
   if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
-  const auto odometry = read_stray_odometry(folder / "odometry.csv");
+  const auto odometry = read_stray_odometry(folder / "odometry.csv", recording.warnings);
   if (!odometry) return tl::unexpected(odometry.error());
+  const auto of_frames = camera_of_frames(folder, *odometry, recording);
   const auto images = list_images(folder);
   if (!images) return tl::unexpected(images.error());
   auto calibration = recording::choose_calibration(
-      folder, options, [&] { return published_calibration(folder, *images); }, recording);
+      folder, options, [&] { return published_calibration(folder, of_frames, *images); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
   if (const auto added = add_frames(*odometry, *images, recording); !added)
     return tl::unexpected(added.error());

@@ -18,8 +18,9 @@ namespace fusebench::formats::stray {
 /// Depth of confidence/<k>.png 0 (low) is no measurement. odometry.csv has the times of frames and
 /// T_world_camera of a camera with y down; it is ARKit's estimate, and labelled so. imu.csv is the app's own:
 /// acceleration before rotation, seconds, in multiples of gravity or m/s^2, with Core Motion's sign.
-/// Calibration: the options', calibration.toml, else camera_matrix.csv, which is of the whole video
-/// (1920 pixels wide) and is scaled to the images; without the place and noise of the IMU, its samples are
+/// Calibration: the options', calibration.toml, else the median of fx, fy, cx, cy in odometry.csv, with a
+/// warning if the focal length changes, else camera_matrix.csv. Both are of the whole video (1920 pixels
+/// wide) and are scaled to the images; without the place and noise of the IMU, its samples are
 /// not used. Errors: configuration, data_missing, data_corrupt.
 [[nodiscard]] Result<recording::Recording> open_stray(const std::filesystem::path& folder,
                                                       const recording::ReadOptions& options);

@@ -8,11 +8,13 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "core/base/printable.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/reading/numbered_frames.hpp"
@@ -39,9 +41,10 @@ std::string column_names(const std::filesystem::path& file) {
   return names;
 }
 
-/// Calls use for each row after the line of names, whose first columns must be `columns`. Times rise, or rows
-/// that repeat the one before are left out.
+/// Calls use for each row after the line of names, whose first columns must be `columns`; the rest of the
+/// names goes to `others`.
 Result<void> for_each_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
+                          std::vector<std::string>& others,
                           const std::function<Result<void>(const io::TextTable&)>& use) {
   const std::string names = column_names(file);
   auto table = io::TextTable::open(file, names.empty() ? "timestamp" : names);
@@ -54,6 +57,7 @@ Result<void> for_each_row(const std::filesystem::path& file, std::span<const std
   if (!named)
     return fail(ErrorCode::data_corrupt, fmt::format("{}:1: expected the line of names that begins with: {}",
                                                      file.string(), fmt::join(columns, ", ")));
+  for (std::size_t k = columns.size(); table->has(k); ++k) others.emplace_back(table->text(k));
   std::size_t rows = 0;
   for (; true; ++rows) {
     const auto got = table->next();
@@ -76,11 +80,55 @@ std::optional<double> specific_force_per_unit(const std::vector<ImuSample>& samp
   return std::nullopt;
 }
 
+constexpr std::array<std::string_view, 4> kIntrinsics = {"fx", "fy", "cx", "cy"};
+
+/// Columns of odometry.csv behind those that every version of the app writes.
+class OtherColumns {
+ public:
+  /// names, which are filled before the first row: of the columns from `first` on.
+  OtherColumns(const std::vector<std::string>& names, std::size_t first) : names_(names), first_(first) {}
+
+  /// Intrinsics of the row; nothing if it has none.
+  Result<std::optional<PinholeCamera>> read(const io::TextTable& table) {
+    note_unused(table);
+    std::array<double, kIntrinsics.size()> k{};
+    for (std::size_t i = 0; i < k.size(); ++i) {
+      const auto found = std::ranges::find(names_, kIntrinsics[i]);
+      const std::size_t column = first_ + static_cast<std::size_t>(found - names_.begin());
+      if (found == names_.end() || !has_value(table, column)) return std::optional<PinholeCamera>();
+      if (const auto read = table.numbers(column, std::span(&k[i], 1)); !read)
+        return tl::unexpected(read.error());
+    }
+    if (!(k[0] > 0 && k[1] > 0)) return table.fail_here("focal lengths fx and fy must be above 0");
+    return std::optional(PinholeCamera{0, 0, k[0], k[1], k[2], k[3]});
+  }
+
+  [[nodiscard]] const std::set<std::string>& unused() const { return unused_; }
+
+ private:
+  static bool has_value(const io::TextTable& table, std::size_t column) {
+    return table.has(column) && !table.text(column).empty();
+  }
+  void note_unused(const io::TextTable& table) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (std::ranges::find(kIntrinsics, names_[i]) == kIntrinsics.end() && has_value(table, first_ + i))
+        unused_.insert(names_[i]);
+    }
+  }
+
+  const std::vector<std::string>& names_;
+  std::size_t first_;
+  std::set<std::string> unused_;
+};
+
 }  // namespace
 
-Result<std::vector<StrayFrame>> read_stray_odometry(const std::filesystem::path& file) {
+Result<std::vector<StrayFrame>> read_stray_odometry(const std::filesystem::path& file,
+                                                    std::vector<std::string>& warnings) {
   constexpr std::array<std::string_view, 9> kColumns = {"timestamp", "frame", "x",  "y", "z",
                                                         "qx",        "qy",    "qz", "qw"};
+  std::vector<std::string> others;
+  OtherColumns other_columns(others, kColumns.size());
   std::vector<StrayFrame> frames;
   const auto row = [&](const io::TextTable& table) -> Result<void> {
     const auto time_ns = table.time_ns(0);
@@ -97,10 +145,16 @@ Result<std::vector<StrayFrame>> read_stray_odometry(const std::filesystem::path&
     const Quaterniond rotation(q[3], q[0], q[1], q[2]);
     if (!(rotation.norm() > 0.5 && rotation.norm() < 2))
       return table.fail_here("the quaternion (qx, qy, qz, qw) is not of unit length");
-    frames.push_back({*index, *time_ns, {rotation.normalized(), *position_m}});
+    const auto camera = other_columns.read(table);
+    if (!camera) return tl::unexpected(camera.error());
+    frames.push_back({*index, *time_ns, {rotation.normalized(), *position_m}, *camera});
     return {};
   };
-  if (const auto read = for_each_row(file, kColumns, row); !read) return tl::unexpected(read.error());
+  if (const auto read = for_each_row(file, kColumns, others, row); !read) return tl::unexpected(read.error());
+  if (!other_columns.unused().empty())
+    warnings.push_back(
+        fmt::format("{}: columns {} are not used", file.string(),
+                    printable(fmt::format("{}", fmt::join(other_columns.unused(), ", ")), 200)));
   return frames;
 }
 
@@ -121,7 +175,11 @@ Result<void> read_stray_imu(const std::filesystem::path& file, recording::Record
     samples.push_back({*time_ns, *rate_radps, *acceleration});
     return {};
   };
-  if (auto read = for_each_row(file, kColumns, row); !read) return read;
+  std::vector<std::string> others;
+  if (auto read = for_each_row(file, kColumns, others, row); !read) return read;
+  if (!others.empty())
+    recording.warnings.push_back(fmt::format("{}: columns {} are not used", file.string(),
+                                             printable(fmt::format("{}", fmt::join(others, ", ")), 200)));
   const auto factor = specific_force_per_unit(samples);
   if (!factor) {
     recording.warnings.push_back(

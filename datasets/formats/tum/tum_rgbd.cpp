@@ -3,9 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
 #include "core/io/input_file.hpp"
 #include "datasets/calibration/camera_presets.hpp"
 #include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/associated_row.hpp"
 #include "datasets/reading/image_list.hpp"
 #include "datasets/reading/image_pairs.hpp"
 #include "datasets/reading/image_recording.hpp"
@@ -33,8 +40,57 @@ Result<calibration::RigCalibration> camera_of_folder(const std::string& name) {
                           fmt::join(presets, "|")));
 }
 
+bool has_both_lists(const std::filesystem::path& folder) {
+  return io::is_named(folder / "rgb.txt") && io::is_named(folder / "depth.txt");
+}
+
+/// The lists of pairs in a folder (associations.txt of ORB-SLAM, output of TUM's associate.py), by name:
+/// those whose first row has two images with times.
+std::vector<std::filesystem::path> lists_of_pairs(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> lists;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const bool may_be = name.ends_with(".txt") && (name.find("assoc") != name.npos || name.starts_with("fr"));
+    if (!may_be) continue;
+    const auto row = reading::first_associated_row(entry.path());
+    if (row && io::parse_time_ns(row->color_stamp) && io::parse_time_ns(row->depth_stamp))
+      lists.push_back(entry.path());
+  }
+  std::ranges::sort(lists);
+  return lists;
+}
+
+/// Without rgb.txt or depth.txt. Error data_missing: no list of pairs, or several.
+Result<void> read_pairs(const std::filesystem::path& folder, const recording::ReadOptions& options,
+                        recording::Recording& recording) {
+  std::vector<std::filesystem::path> lists = lists_of_pairs(folder);
+  // An error in its first row is named below.
+  if (lists.empty() && io::is_named(folder / "associations.txt"))
+    lists.push_back(folder / "associations.txt");
+  constexpr const char* kNeeded =
+      "needed are rgb.txt and depth.txt (\"seconds file\"), or one associations.txt (\"seconds file seconds "
+      "file\", colour and depth in a row)";
+  if (lists.empty()) {
+    const char* const missing = io::is_named(folder / "rgb.txt") ? "depth.txt" : "rgb.txt";
+    return fail(ErrorCode::data_missing, fmt::format("{}: no such file", (folder / missing).string()),
+                kNeeded);
+  }
+  if (lists.size() > 1)
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: has several lists of pairs ({}, {}) and no rgb.txt and depth.txt",
+                            folder.string(), lists[0].filename().string(), lists[1].filename().string()),
+                kNeeded);
+  if (auto added = reading::add_associated_frames(lists[0], recording); !added) return added;
+  const std::string name = lists[0].filename().string();
+  reading::make_stamps_regular(name, options, recording);
+  recording.notes.push_back(fmt::format("images: pairs as listed in {}", name));
+  return {};
+}
+
 Result<void> read_lists(const std::filesystem::path& folder, const recording::ReadOptions& options,
                         recording::Recording& recording) {
+  if (!has_both_lists(folder)) return read_pairs(folder, options, recording);
   const auto color = reading::read_image_list(folder / "rgb.txt", recording.warnings);
   if (!color) return tl::unexpected(color.error());
   const auto depth = reading::read_image_list(folder / "depth.txt", recording.warnings);
@@ -52,6 +108,10 @@ Result<void> read_accelerometer(const std::filesystem::path& folder, recording::
 }
 
 }  // namespace
+
+bool is_tum(const std::filesystem::path& folder) {
+  return has_both_lists(folder) || !lists_of_pairs(folder).empty();
+}
 
 Result<recording::Recording> open_tum_rgbd(const std::filesystem::path& folder,
                                            const recording::ReadOptions& options) {

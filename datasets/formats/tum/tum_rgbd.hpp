@@ -9,9 +9,14 @@
 
 namespace fusebench::formats::tum {
 
+/// rgb.txt and depth.txt, or a list of pairs, lie in the folder.
+[[nodiscard]] bool is_tum(const std::filesystem::path& folder);
+
 /// Opens a folder with rgb.txt, depth.txt and, if present, groundtruth.txt, accelerometer.txt, and the files
 /// that any format may have beside it (calibration.toml, imu.csv). Checks all lists, pairs colour with depth
 /// by TUM's rule, and reads every used image once for the fingerprint. Images are undistorted when loaded.
+/// Without rgb.txt or depth.txt, pairs are those of a list "seconds file seconds file" (associations.txt of
+/// ORB-SLAM, in either order of colour and depth; any *assoc*.txt or fr*.txt).
 /// Without calibration.toml the folder's name tells the camera. Errors: configuration (unknown camera, option
 /// out of range), data_missing, data_corrupt.
 [[nodiscard]] Result<recording::Recording> open_tum_rgbd(const std::filesystem::path& folder,

@@ -48,14 +48,23 @@ LibraryResult<OpenedImage> opened(std::shared_ptr<OIIO::ImageInput> input, Owned
                      }};
 }
 
+/// Colours as they are stored: by default the library multiplies them by alpha.
+OIIO::ImageSpec stored_colors() {
+  OIIO::ImageSpec settings;
+  settings.attribute("oiio:UnassociatedAlpha", 1);
+  return settings;
+}
+
 LibraryResult<OpenedImage> open_image(const std::string& file) {
-  return opened(OIIO::ImageInput::open(file), nullptr);
+  const OIIO::ImageSpec settings = stored_colors();
+  return opened(OIIO::ImageInput::open(file, &settings), nullptr);
 }
 
 LibraryResult<OpenedImage> open_bytes(const std::string& name, std::span<const std::byte> bytes) {
   const auto memory =
       std::make_shared<OIIO::Filesystem::IOMemReader>(const_cast<std::byte*>(bytes.data()), bytes.size());
-  return opened(OIIO::ImageInput::open(name, nullptr, memory.get()), memory);
+  const OIIO::ImageSpec settings = stored_colors();
+  return opened(OIIO::ImageInput::open(name, &settings, memory.get()), memory);
 }
 
 LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int quality) {

@@ -24,10 +24,11 @@ void add_reading_options(CLI::App& verb, ReadingOptions& options, const std::str
           "Largest difference between a colour image and its depth image, where they are paired by time")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--frame-rate", options.frame_rate_hz,
-                  "Images a second of recordings without stamps (icl, 7scenes)")
-      ->type_name("HZ")
-      ->capture_default_str();
+  verb.add_option(
+          "--frame-rate", options.frame_rate_hz,
+          "Images a second of recordings without stamps (icl, 7scenes, open3d, ...); default: what the "
+          "recording says, else 30")
+      ->type_name("HZ");
   verb.add_flag("--published-stamps", options.published_stamps,
                 "Images were taken at their stamps: no jitter is removed");
   verb.add_flag("--filtered-depth", options.filtered_depth,

@@ -21,7 +21,7 @@ struct ReadingOptions {
   std::string format;
   std::optional<double> depth_units_per_metre;
   double max_difference_s = recording::ReadOptions{}.max_difference_s;
-  double frame_rate_hz = recording::ReadOptions{}.frame_rate_hz;
+  std::optional<double> frame_rate_hz;
   bool published_stamps = false;
   bool filtered_depth = false;
 };

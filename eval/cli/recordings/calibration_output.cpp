@@ -16,7 +16,9 @@ Result<void> write_calibration(const std::filesystem::path& out, const calibrati
   std::error_code ignored;
   const bool there = std::filesystem::exists(out, ignored);
   const auto replaced = calibration::read_calibration(out);
-  if (auto written = text::write_text_file(out, calibration::to_toml(rig)); !written) return written;
+  const std::string toml = calibration::to_toml(rig);
+  if (auto readable = calibration::check_readable(toml, out.string()); !readable) return readable;
+  if (auto written = text::write_text_file(out, toml); !written) return written;
   std::string before;
   if (replaced)
     before = fmt::format(", in place of a calibration ({})",

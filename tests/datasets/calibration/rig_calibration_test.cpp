@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <string>
 
 #include "datasets/calibration/recording_catalogue.hpp"
@@ -99,6 +101,82 @@ TEST(RigCalibration, ReadsBackWhatItWrites) {
   EXPECT_EQ(after->imu->time_offset_s, -0.0125);
   EXPECT_EQ(after->imu->gyroscope_scale, before.imu->gyroscope_scale);
   EXPECT_EQ(after->imu->accelerometer_scale, before.imu->accelerometer_scale);
+}
+
+/// A calibration whose numbers are drawn between the bounds of their keys; at a bound in two of three cases.
+class AnyCalibration {
+ public:
+  explicit AnyCalibration(unsigned seed) : random_(seed) {}
+
+  [[nodiscard]] RigCalibration next() {
+    RigCalibration c;
+    c.color.pinhole = pinhole(flip());
+    c.color.distortion = {number(-10, 10), number(-10, 10), number(-1, 1), number(-1, 1), number(-10, 10)};
+    c.color.ground_truth_offset_m = vector(-kMostLeverArm_m, kMostLeverArm_m);
+    c.color.timing = {readout(), readout(), delay(), readout(), readout(), std::abs(delay())};
+    if (flip()) c.depth_units_per_metre = number(1e-3, 1e6);
+    if (flip()) c.depth = DepthCamera{pinhole(true), transform()};
+    if (flip())
+      c.imu = ImuCalibration{transform(),
+                             {number(1e-9, 100), number(1e-9, 100), number(0, 100), number(0, 100)},
+                             delay(),
+                             vector(0.5, 2),
+                             vector(0.5, 2)};
+    return c;
+  }
+
+ private:
+  bool flip() { return random_() % 2 == 0; }
+  double number(double least, double most) {
+    const auto choice = random_() % 3;
+    return choice == 0 ? least : choice == 1 ? most : std::uniform_real_distribution(least, most)(random_);
+  }
+  Vector3d vector(double least, double most) {
+    return {number(least, most), number(least, most), number(least, most)};
+  }
+  double readout() { return number(0, kMostReadout_s); }
+  double delay() { return number(-kMostDelay_s, kMostDelay_s); }
+  SE3 transform() { return {so3_exp(vector(-3, 3)), vector(-kMostLeverArm_m, kMostLeverArm_m)}; }
+  PinholeCamera pinhole(bool with_size) {
+    PinholeCamera p{0, 0, number(1e-3, 1e6), number(1e-3, 1e6), number(-1e6, 1e6), number(-1e6, 1e6)};
+    if (with_size) {
+      p.width_px = static_cast<int>(number(1, kMostSize_px));
+      p.height_px = static_cast<int>(number(1, kMostSize_px));
+    }
+    return p;
+  }
+
+  std::mt19937 random_;
+};
+
+TEST(RigCalibration, EveryCalibrationWithinTheBoundsReadsBack) {
+  AnyCalibration any(1);
+  for (int i = 0; i < 300; ++i) {
+    const RigCalibration before = any.next();
+    const std::string text = to_toml(before);
+    const auto after = read(text);
+    ASSERT_TRUE(after) << after.error().message << "\n" << text;
+    EXPECT_TRUE(check_readable(text, "c.toml"));
+    expect_equal(after->color.pinhole, before.color.pinhole);
+    EXPECT_EQ(after->color.timing.color_readout_s, before.color.timing.color_readout_s);
+    EXPECT_EQ(after->color.timing.depth_delay_sigma_s, before.color.timing.depth_delay_sigma_s);
+    EXPECT_EQ(after->depth.has_value(), before.depth.has_value());
+    EXPECT_EQ(after->depth_units_per_metre, before.depth_units_per_metre);
+    ASSERT_EQ(after->imu.has_value(), before.imu.has_value());
+    if (after->imu) {
+      EXPECT_EQ(after->imu->gyroscope_scale, before.imu->gyroscope_scale);
+    }
+  }
+}
+
+TEST(RigCalibration, WhatCouldNotBeReadIsNotWritten) {
+  RigCalibration c = whole_calibration();
+  c.color.timing.color_readout_s = -9.3e-5;
+  const auto refused = check_readable(to_toml(c), "c.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.find("not written, since it could not be read: c.toml:"), 0U)
+      << refused.error().message;
+  EXPECT_NE(refused.error().message.find("color.readout_s must be a number from 0 to 1"), std::string::npos);
 }
 
 TEST(RigCalibration, ScalesOfTheImuAreNearOneAndOtherwiseOne) {

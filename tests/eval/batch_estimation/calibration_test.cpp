@@ -185,6 +185,23 @@ TEST(Calibration, WritesAFileThatReadsBack) {
   EXPECT_NE(rig.source.find("100 frames of textured room"), std::string::npos);
 }
 
+TEST(Calibration, ReadOutsBelowZeroAreWrittenAsZero) {
+  const testing::SimulatedRun run = testing::simulate(2);
+  const Recording recording = recording_of(run);
+  CameraImuCalibration found;
+  found.gyroscope_scale.value = found.accelerometer_scale.value = {1, 1, 1};
+  found.timing = {-9.3e-5, 1.2, -0.018, 0.0002, 0.0003, 0.0004};
+  found.timing_before = found.timing;
+  const RigCalibration rig = calibrated_rig(recording, found);
+  EXPECT_EQ(rig.color.timing.color_readout_s, 0);
+  EXPECT_EQ(rig.color.timing.depth_readout_s, calibration::kMostReadout_s);
+  EXPECT_EQ(rig.color.timing.depth_delay_s, -0.018) << "may have either sign";
+  const auto readable = calibration::check_readable(calibration::to_toml(rig), "c.toml");
+  EXPECT_TRUE(readable) << readable.error().message;
+  EXPECT_NE(to_text(found, recording).find("0 in the calibration, since no read-out is below 0 (0.5 sigmas"),
+            std::string::npos);
+}
+
 TEST(Smoothing, FollowsTheTruthAndIsLabelled) {
   const testing::SimulatedRun run = testing::simulate(kFrames);
   const Recording recording = recording_of(run);

@@ -107,8 +107,14 @@ TEST_F(EurocFolder, WhatIsWrongIsNamed) {
   replace("mav0/cam0/sensor.yaml", "radial-tangential", "equidistant");
   EXPECT_TRUE(open_recording(place_)) << "without a distortion the model does not matter";
   replace("mav0/cam0/sensor.yaml", "distortion_coefficients: [0.0,", "distortion_coefficients: [0.1,");
-  expect_contains(refusal(), "cam0/sensor.yaml:16: the distortion must be radial-tangential");
-  replace("mav0/cam0/sensor.yaml", "equidistant", "radial-tangential");
+  expect_contains(refusal(), "cam0/sensor.yaml:16: distortion model equidistant is not supported");
+  replace("mav0/cam0/sensor.yaml", "equidistant", "radtan");
+  const auto radtan = open_recording(place_);
+  ASSERT_TRUE(radtan) << radtan.error().message;
+  EXPECT_EQ(radtan->calibration->color.distortion.k1, 0.1);
+  replace("mav0/cam0/sensor.yaml", "coefficients: [0.1,", "coefficients: [0.1, x,");
+  expect_contains(refusal(), "sensor.yaml:17: distortion_coefficients must be a list of finite numbers");
+  replace("mav0/cam0/sensor.yaml", "coefficients: [0.1, x,", "coefficients: [0.1,");
   replace("mav0/imu0/sensor.yaml", "gyroscope_noise_density: 0.001", "gyroscope_noise_density: 0");
   expect_contains(refusal(), "imu0/sensor.yaml:13: gyroscope_noise_density must be a density above 0");
   replace("mav0/imu0/sensor.yaml", "gyroscope_noise_density: 0", "gyroscope_noise_density: 0.001");

@@ -70,6 +70,49 @@ TEST_F(Open3dFolder, AnAzureKinectsFolderCounts) {
   EXPECT_EQ(read->load_frame(1)->depth_m(2, 2), 0.75F);
 }
 
+/// As RSBagReader writes it: an L515 has a depth unit of 0.25 mm.
+TEST_F(Open3dFolder, DepthScaleAndRateOfTheRecorderAreUsed) {
+  export_made();
+  std::filesystem::remove(place_ / "config.json");
+  std::filesystem::remove(place_ / "frame_times.txt");
+  const auto write_recorder = [&](std::string_view more) {
+    write("room/intrinsic.json",
+          R"({"width": 16, "height": 12, "intrinsic_matrix": [20, 0, 0, 0, 21, 0, 7.5, )"
+          R"(5.5, 1], "device_name": "L515", "stream_length_usec": 400000)" +
+              std::string(more) + "}");
+  };
+  write_recorder(R"(, "depth_scale": 3999.999755859375, "fps": 15.0, "exposure": 3)");
+  const auto read = open_recording(place_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->frames[1].timestamp_ns, 66'666'667);
+  EXPECT_NEAR(read->load_frame(1)->depth_m(5, 5), testing::made_frame(16, 12, 1).depth_m(5, 5) / 4, 1e-3);
+  EXPECT_TRUE(testing::any_contains(read->warnings, "intrinsic.json: not used: exposure"));
+  ReadOptions options;
+  options.frame_rate_hz = 25;
+  options.depth_units_per_metre = 1000;
+  const auto given = open_recording(place_, {"", options});
+  ASSERT_TRUE(given) << given.error().message;
+  EXPECT_EQ(given->frames[1].timestamp_ns, 40'000'000);
+  EXPECT_EQ(given->load_frame(1)->depth_m(5, 5), testing::made_frame(16, 12, 1).depth_m(5, 5));
+  write_recorder(R"(, "fps": 0)");
+  expect_contains(refusal(), "intrinsic.json: fps = 0 (allowed: 1 to 1000)");
+}
+
+TEST_F(Open3dFolder, DepthScaleOfTheRecorderIsPreferredToThatOfTheReconstruction) {
+  export_made();
+  write(
+      "room/intrinsic.json",
+      R"({"width": 16, "height": 12, "intrinsic_matrix": [20, 0, 0, 0, 21, 0, 7.5, 5.5, 1], "depth_scale": 4000})");
+  write("room/config.json", R"({"depth_scale": 1000})");
+  const auto read = open_recording(place_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->calibration->depth_units_per_metre, 4000);
+  EXPECT_TRUE(
+      testing::any_contains(read->warnings, "depth_scale is 4000 in intrinsic.json and 1000 in config.json"));
+  write("room/config.json", R"({"depth_scale": 4000})");
+  EXPECT_TRUE(open_recording(place_)->warnings.empty());
+}
+
 TEST_F(Open3dFolder, WhatIsWrongIsNamed) {
   export_made();
   write("room/frame_times.txt", "0 1000.0\n1 999.0\n");
@@ -78,7 +121,7 @@ TEST_F(Open3dFolder, WhatIsWrongIsNamed) {
   expect_contains(refusal(), "frame_times.txt: has no time of frame 2");
   std::filesystem::remove(place_ / "frame_times.txt");
   write("room/config.json", "{\"depth_scale\": 0}");
-  expect_contains(refusal(), "config.json: depth_scale = 0 (allowed: above 0)");
+  expect_contains(refusal(), "config.json: depth_scale = 0 (allowed: 0.001 to 1000000)");
   write("room/config.json", "{}");
   write("room/intrinsic.json", "{\"width\": 16, \"height\": 12");
   expect_contains(refusal(), "intrinsic.json: is not JSON, or not all of it is there");

@@ -106,6 +106,22 @@ TEST_F(OpenLoris, PosesOfTheRobotBecomeThoseOfTheCamera) {
   EXPECT_LT((T_world_color.rotation * Vector3d(1, 0, 0) - Vector3d(0, -1, 0)).norm(), 1e-9);
 }
 
+TEST_F(OpenLoris, ModelOfDistortionIsRead) {
+  std::string sensors(kSensors);
+  const auto replace = [&](std::string_view from, std::string_view to) {
+    sensors.replace(sensors.find(from), from.size(), to);
+    write("sensors.yaml", sensors);
+  };
+  replace("data: [ 0., 0., 0., 0. ]", "data: [ 0.25, 0., 0., 0. ]");
+  replace("distortion_model: radial-tangential", "distortion_model: plumb_bob");
+  EXPECT_EQ(open_recording(folder_).value().calibration->color.distortion.k1, 0.25);
+  replace("distortion_model: plumb_bob", "distortion_model: kannala_brandt");
+  const auto refused = open_recording(folder_);
+  ASSERT_FALSE(refused);
+  expect_contains(refused.error().message,
+                  "sensors.yaml:15: distortion model kannala_brandt is not supported");
+}
+
 TEST_F(OpenLoris, WhatIsWrongIsNamed) {
   const auto refusal = [&] {
     const auto opened = open_recording(folder_);

@@ -74,6 +74,26 @@ TEST_F(Record3d, DepthInMetresAndPosesOfACameraWithYUp) {
   EXPECT_TRUE(recording->truth_label.starts_with("pseudo ground truth: ARKit"));
 }
 
+TEST_F(Record3d, FocalLengthsOfEachFrameAreNamedAndTheMedianIsUsed) {
+  write_metadata("",
+                 R"(, "perFrameIntrinsicCoeffs": [[10, 11, 3, 2], [11, 12, 3.25, 2.25]], "lens": "wide")");
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->rig.camera.fx_px, 11);
+  EXPECT_EQ(recording->rig.camera.cy_px, 2.25);
+  EXPECT_EQ(recording->rig.camera.width_px, 8);
+  EXPECT_TRUE(testing::any_contains(recording->warnings, "metadata.json: the focal length changes by 9.1 %"));
+  EXPECT_TRUE(testing::any_contains(recording->warnings, "metadata.json: not used: lens"));
+  write_metadata("", R"(, "perFrameIntrinsicCoeffs": [[10, 11, 3]])");
+  expect_contains(refusal(), "perFrameIntrinsicCoeffs[0], a list of 4 finite numbers");
+}
+
+TEST_F(Record3d, TheGivenFrameRateReplacesThatOfTheFile) {
+  ReadOptions options;
+  options.frame_rate_hz = 50;
+  EXPECT_EQ(open_recording(folder_, {"", options}).value().frames[1].timestamp_ns, 20'000'000);
+}
+
 /// A run is a process that is forked from the engine, which has opened the recording: threads that the
 /// decoder had there are none that it has here.
 TEST_F(Record3d, AForkedProcessDecodesAsItsParentDid) {

@@ -61,6 +61,16 @@ inline std::string ros_image(const std::string& header, std::uint32_t width, std
          little_endian(step) + with_length(data);
 }
 
+inline std::string ros_camera_info(const std::string& header, std::uint32_t width, std::uint32_t height,
+                                   std::string_view model, const std::vector<double>& distortion,
+                                   const std::array<double, 9>& K) {
+  std::string bytes = header + little_endian(height) + little_endian(width) + with_length(model) +
+                      little_endian(static_cast<std::uint32_t>(distortion.size()));
+  for (const double value : distortion) bytes += little_endian(value);
+  for (const double value : K) bytes += little_endian(value);
+  return bytes;
+}
+
 inline std::string ros_imu(const std::string& header, const std::array<double, 3>& rate,
                            const std::array<double, 3>& force) {
   std::string bytes = header + std::string(13 * 8, '\0');

@@ -153,6 +153,34 @@ TEST_F(Rosbag, ImagesWithoutACameraOrATransformSayWhatIsMissing) {
   EXPECT_EQ(given->load_frame(0)->depth_m(1, 0), 0.257F);
 }
 
+TEST_F(Rosbag, DistortionOfTheUsedCameraMustBeSupported) {
+  const auto bag = [](std::string_view model, double k1) {
+    const std::string header = ros_header(5, 0, "c");
+    const auto info = [&](std::string_view name, double coefficient) {
+      return testing::ros_camera_info(header, 2, 1, name, {coefficient, 0, 0, 0, 0},
+                                      {10, 0, 0.5, 0, 11, 0, 0, 0, 1});
+    };
+    return bag_connection(0, "/color/image_raw", "sensor_msgs/Image") +
+           bag_connection(1, "/aligned_depth/image", "sensor_msgs/Image") +
+           bag_connection(2, "/color/camera_info", "sensor_msgs/CameraInfo") +
+           bag_connection(3, "/fisheye1/camera_info", "sensor_msgs/CameraInfo") +
+           bag_message(0, 1, ros_image(header, 2, 1, "rgb8", 6, "abcdef")) +
+           bag_message(1, 1, ros_image(header, 2, 1, "16UC1", 4, "\1\1\1\1")) +
+           bag_message(2, 1, info(model, k1)) + bag_message(3, 1, info("equidistant", 0.5));
+  };
+  const auto open = [&](const std::string& bytes) {
+    return open_recording(write("room.bag", "#ROSBAG V2.0\n" + bytes));
+  };
+  const auto radtan = open(bag("radtan", 0.25));
+  ASSERT_TRUE(radtan) << "the camera that is not used does not matter: " << radtan.error().message;
+  EXPECT_EQ(radtan->calibration->color.distortion.k1, 0.25);
+  EXPECT_TRUE(open(bag("inverse_brown_conrady", 0)));
+  const Error refused = refusal(bag("equidistant", 0.25));
+  EXPECT_EQ(refused.code, ErrorCode::data_corrupt);
+  expect_contains(refused.message,
+                  "room.bag: /color/camera_info: distortion model equidistant is not supported");
+}
+
 TEST_F(Rosbag, BagsOfRos2AreRefusedWithWhatConvertsThem) {
   for (const char* name : {"room_0.db3", "room.mcap"}) {
     const auto refused = open_recording(write(name, "any"));
@@ -195,6 +223,7 @@ TEST_F(Rosbag, EncodingsOfImages) {
   EXPECT_EQ((*color("rgb8", 6, "abcdef"))(1, 0), (Rgb{'d', 'e', 'f'}));
   EXPECT_EQ((*color("bgr8", 8, "abcdef__"))(1, 0), (Rgb{'f', 'e', 'd'})) << "rows may be longer";
   EXPECT_EQ((*color("bgra8", 8, "abc_def_"))(1, 0), (Rgb{'f', 'e', 'd'}));
+  EXPECT_EQ((*color("mono8", 2, "ab"))(1, 0), (Rgb{'b', 'b', 'b'}));
   expect_contains(color("rgb8", 6, "abcde").error().message,
                   "an image: 5 bytes in rows of 6 are not 2x1 pixels");
   expect_contains(color("yuv422", 6, "abcdef").error().message, "encoding 'yuv422' (read are rgb8, ");
@@ -207,6 +236,19 @@ TEST_F(Rosbag, EncodingsOfImages) {
   EXPECT_EQ((*depth("mono16", "\xe8\x03\xff\xff"))(1, 0), 0) << "65535 is no measurement";
   EXPECT_EQ((*depth("32FC1", "\x00\x00\xc0\x3f\x00\x00\xc0\x7f"s))(0, 0), 1.5F);
   EXPECT_EQ((*depth("32FC1", "\x00\x00\xc0\x3f\x00\x00\xc0\x7f"s))(1, 0), 0) << "NaN";
+}
+
+TEST_F(Rosbag, GreyImagesAreTakenWhereThereIsNoColour) {
+  BagTopics topics;
+  topics.images["/camera/depth/image"].kind = ImageKind::depth;
+  ImageTopic grey;
+  grey.kind = ImageKind::color;
+  grey.is_grey = true;
+  for (const char* name : {"/camera/infra1/image", "/camera/confidence/image", "/camera/rgb/image_mono"})
+    topics.images[name] = grey;
+  EXPECT_EQ(choose_topics(topics, "room.bag").value().color, "/camera/rgb/image_mono");
+  topics.images["/usb_cam/image"].kind = ImageKind::color;
+  EXPECT_EQ(choose_topics(topics, "room.bag").value().color, "/usb_cam/image");
 }
 
 TEST_F(Rosbag, CompressedTopicsHoldImageFiles) {

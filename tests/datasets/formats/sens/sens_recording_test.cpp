@@ -1,8 +1,10 @@
 #include "datasets/formats/sens/sens_recording.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <vector>
 
 #include "datasets/exports/export_recording.hpp"
 #include "datasets/image_logs/sens_log.hpp"
@@ -27,6 +29,8 @@ using testing::made_frame;
 struct Layout {
   std::uint64_t first_us = 5'000'000;
   std::uint64_t period_us = 33'000;
+  std::vector<std::uint64_t> color_us;  ///< in place of the above
+  std::vector<std::uint64_t> depth_us;
   bool with_poses = true;
   bool own_depth_camera = false;
   SensColorCodec codec = SensColorCodec::plain;
@@ -36,21 +40,23 @@ class SensRecording : public testing::InTemporaryFolder {
  protected:
   const std::filesystem::path file_ = folder_ / "scene0000_00.sens";
 
-  /// Three frames of 8x6 pixels.
+  /// Three frames of 8x6 pixels, or one for each given stamp.
   static std::string bytes_of(const Layout& layout) {
     SensHeader header{"made", {8, 6, 10, 11, 3.5, 2.5}, {8, 6, 10, 11, 3.5, 2.5}};
     header.color_codec = layout.codec;
-    header.frames = 3;
+    header.frames = layout.color_us.empty() ? 3 : layout.color_us.size();
     if (layout.own_depth_camera) {
       header.depth = {4, 3, 5, 5.5, 1.5, 1};
       header.T_rig_depth = SE3{Quaterniond::Identity(), {0.25, 0, 0}};
     }
     std::string bytes = sens_bytes(header);
-    for (std::uint64_t k = 0; k < 3; ++k) {
+    for (std::uint64_t k = 0; k < header.frames; ++k) {
       SensFrame frame;
       if (layout.with_poses && k != 1)
         frame.T_world_camera = SE3{Quaterniond::Identity(), {static_cast<double>(k), 1, -2}};
       frame.color_timestamp_us = frame.depth_timestamp_us = layout.first_us + k * layout.period_us;
+      if (!layout.color_us.empty()) frame.color_timestamp_us = frame.depth_timestamp_us = layout.color_us[k];
+      if (!layout.depth_us.empty()) frame.depth_timestamp_us = layout.depth_us[k];
       for (int i = 0; i < 8 * 6; ++i)
         frame.color += {static_cast<char>(i), static_cast<char>(10 * k), static_cast<char>(200)};
       frame.depth = Image<std::uint16_t>(header.depth.width_px, header.depth.height_px, 1500);
@@ -59,14 +65,15 @@ class SensRecording : public testing::InTemporaryFolder {
     }
     return bytes;
   }
-  static std::string imu_bytes(double gravity, int count = 20) {
+  static std::string imu_bytes(double gravity, int count = 20, int repeated = -1) {
     std::string bytes;
     append_number<std::uint64_t>(bytes, static_cast<std::uint64_t>(count));
     for (int i = 0; i < count; ++i) {
       for (const double value :
            {0.5, 0.0, -0.25, 0.0, 0.125, 0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, -gravity})
         append_number(bytes, value);
-      append_number<std::uint64_t>(bytes, static_cast<std::uint64_t>(4'990'000 + i * 10'000));
+      append_number<std::uint64_t>(
+          bytes, static_cast<std::uint64_t>(4'990'000 + (i == repeated ? i - 1 : i) * 10'000));
     }
     return bytes;
   }
@@ -117,9 +124,60 @@ TEST_F(SensRecording, StampsThatDoNotRiseAreReplacedByNumbers) {
   const auto read = open(bytes_of(layout));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->frames[2].timestamp_ns, 66'666'667);
-  EXPECT_TRUE(any_contains(read->notes, "has no stamps; frame k is taken to be at k / 30 s"));
+  EXPECT_TRUE(any_contains(read->notes, "since only 1 of 3 rise; frame k is taken to be at k / 30 s"));
   layout.period_us = 33;  // milliseconds
   EXPECT_EQ(open(bytes_of(layout))->frames[1].timestamp_ns, 5'000'033'000'000);
+}
+
+TEST_F(SensRecording, FramesWithOddStampsAreLeftOutAndNamed) {
+  Layout layout;
+  const std::vector<std::uint64_t> good = {5'000'000, 5'033'000, 5'066'000, 5'099'000, 5'132'000, 5'165'000};
+  for (const auto& [frame, stamp] : {std::pair<std::size_t, std::uint64_t>{0, 0},
+                                     {0, 9'000'000'000},
+                                     {2, 0},
+                                     {3, 5'066'000},
+                                     {3, 9'000'000'000},
+                                     {5, 7},
+                                     {5, 9'000'000'000}}) {
+    SCOPED_TRACE(fmt::format("frame {} with {}", frame, stamp));
+    layout.color_us = good;
+    layout.color_us[frame] = stamp;
+    const auto read = open(bytes_of(layout));
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->frames.size(), 5);
+    for (std::size_t k = 0; k < 5; ++k) {
+      const std::size_t in_file = k < frame ? k : k + 1;
+      EXPECT_EQ(read->frames[k].timestamp_ns, static_cast<std::int64_t>(1000 * good[in_file]));
+      EXPECT_EQ(read->load_frame(k)->color(3, 1)[1], 10 * in_file);
+    }
+    EXPECT_TRUE(
+        any_contains(read->warnings, fmt::format("1 of 6 frames are not used, since their stamps do not "
+                                                 "rise with the others' (the first is frame {} with {})",
+                                                 frame, stamp)));
+    EXPECT_FALSE(any_contains(read->notes, "has no stamps"));
+  }
+}
+
+TEST_F(SensRecording, ReasonForNumbersIsTrue) {
+  Layout layout;
+  layout.color_us = {0, 0, 0};
+  EXPECT_TRUE(any_contains(open(bytes_of(layout))->notes, "time: the .sens file has no stamps; frame k"));
+  layout.color_us = {5'000'000, 4'000'000, 3'000'000, 3'033'000};
+  EXPECT_TRUE(any_contains(open(bytes_of(layout))->notes, "are not used, since only 2 of 4 rise; frame k"));
+  layout.color_us = {1, 2, 3, 4};
+  EXPECT_TRUE(any_contains(open(bytes_of(layout))->notes, "a spacing of 1 is not that of images"));
+}
+
+TEST_F(SensRecording, DepthStampsFarFromColourAreNotUsed) {
+  Layout layout;
+  layout.color_us = {5'000'000, 5'033'000, 5'066'000};
+  layout.depth_us = {5'001'000, 0, 9'000'000};
+  const auto read = open(bytes_of(layout));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->frames[0].depth_timestamp_ns, 5'001'000'000);
+  EXPECT_EQ(read->frames[1].depth_timestamp_ns, 5'033'000'000);
+  EXPECT_EQ(read->frames[2].depth_timestamp_ns, 5'066'000'000);
+  EXPECT_TRUE(any_contains(read->warnings, "1 depth stamps are more than 1 s from colour's"));
 }
 
 TEST_F(SensRecording, DepthOfAnotherCameraIsRegistered) {
@@ -145,6 +203,11 @@ TEST_F(SensRecording, InertialFramesAreCoreMotions) {
   EXPECT_EQ(read->imu[1].timestamp_ns, 5'000'000'000);
   EXPECT_EQ(read->imu[0].angular_velocity_radps, Vector3d(0.5, 0, -0.25));
   EXPECT_LT((read->imu[0].specific_force_mps2 - Vector3d(0, -0.125 * 9.80665, 9.80665)).norm(), 1e-9);
+  const auto repeated = open(bytes_of({}) + imu_bytes(1, 20, 7));
+  ASSERT_TRUE(repeated);
+  EXPECT_EQ(repeated->imu.size(), 19);
+  EXPECT_TRUE(
+      any_contains(repeated->warnings, "1 of 20 inertial frames are not used: their stamps do not rise"));
   const auto unknown = open(bytes_of({}) + imu_bytes(9.8));
   ASSERT_TRUE(unknown);
   EXPECT_TRUE(unknown->imu.empty());

@@ -42,7 +42,7 @@ class StrayScanner : public testing::InTemporaryFolder {
       GreyImage levels(8, 6, 2);
       levels(0, 0) = 0;
       EXPECT_TRUE(write_png(file("confidence", k), levels));
-      odometry += fmt::format("{}, {:06}, {}, 0.5, 0, 0, 0, 0, 1.0, 1600, 1600, 960, 720, , \n",
+      odometry += fmt::format("{}, {:06}, {}, 0.5, 0, 0, 0, 0, 1.0, 1600, 1600, 959.5, 719.5, , \n",
                               100 + k / 32.0, k, k);
     }
     write("odometry.csv", odometry);
@@ -119,8 +119,41 @@ TEST_F(StrayScanner, FramesNumberedFromOneAreRefused) {
 
 TEST_F(StrayScanner, RotatedImagesAreRefused) {
   for (int k = 0; k < 3; ++k) EXPECT_TRUE(write_png(file("rgb", k), ColorImage(24, 32, Rgb{9, 8, 7})));
-  expect_contains(refusal().message, "camera_matrix.csv: the centre (959.5, 719.5) is not that of a video");
+  expect_contains(refusal().message, "odometry.csv: the centre (959.5, 719.5) is not that of a video");
   expect_contains(refusal().hint, "-noautorotate");
+}
+
+TEST_F(StrayScanner, FocalLengthsThatChangeAreNamedAndTheMedianIsUsed) {
+  std::string odometry = "timestamp, frame, x, y, z, qx, qy, qz, qw, fx, fy, cx, cy, distortion_center_x\n";
+  for (const auto& [k, f_px] : {std::pair{0, 1440}, std::pair{1, 1500}, std::pair{2, 1590}})
+    odometry += fmt::format("{}, {}, 0, 0, 0, 0, 0, 0, 1, {}, {}, 959.5, 719.5, 960\n", 100 + k / 32.0, k,
+                            f_px, f_px);
+  write("odometry.csv", odometry);
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_NEAR(recording->rig.camera.fx_px, 1500.0 / 60, 1e-9) << "camera_matrix.csv is the last frame's";
+  EXPECT_TRUE(any_contains(recording->warnings,
+                           "odometry.csv: the focal length changes by 10.0 % (from 1440.0 "
+                           "px in frame 0 to 1590.0 px in frame 2)"));
+  EXPECT_TRUE(any_contains(recording->warnings, "odometry.csv: columns distortion_center_x are not used"));
+  write("calibration.toml", kImuCalibration);
+  EXPECT_TRUE(any_contains(open_recording(folder_)->warnings, "focal length changes"))
+      << "a calibration is one camera too";
+}
+
+TEST_F(StrayScanner, CameraMatrixIsUsedWhereFramesHaveNoIntrinsics) {
+  write("camera_matrix.csv", "1500.0, 0.0, 959.5\n0.0, 1500.0, 719.5\n0.0, 0.0, 1.0");
+  EXPECT_NEAR(open_recording(folder_)->rig.camera.fx_px, 1600.0 / 60, 1e-9);
+  const std::string names = "timestamp, frame, x, y, z, qx, qy, qz, qw";
+  for (const std::string more : {"", ", fx, fy, cx, cy"}) {
+    write("odometry.csv",
+          names + more + "\n1, 0, 0, 0, 0, 0, 0, 0, 1" + (more.empty() ? "" : ", , , , ") + "\n");
+    const auto recording = open_recording(folder_);
+    ASSERT_TRUE(recording) << recording.error().message;
+    EXPECT_NEAR(recording->rig.camera.fx_px, 1500.0 / 60, 1e-9);
+  }
+  write("odometry.csv", names + ", fx, fy, cx, cy\n1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 2, 3\n");
+  expect_contains(refusal().message, "odometry.csv:2: focal lengths fx and fy must be above 0");
 }
 
 TEST_F(StrayScanner, WhatIsWrongIsNamed) {

@@ -240,7 +240,68 @@ TEST(TumRgbd, MissingLists) {
   const auto unrecognised = open_recording(folder.path());
   ASSERT_FALSE(unrecognised);
   EXPECT_EQ(unrecognised.error().code, ErrorCode::data_missing);
-  expect_contains(unrecognised.error().message, "tum (files rgb.txt, depth.txt)");
+  expect_contains(unrecognised.error().message, "tum (files rgb.txt, depth.txt or associations.txt)");
+}
+
+/// The folder without its two lists, and with one of pairs.
+class ListOfPairs {
+ public:
+  ListOfPairs(const std::string& name, std::string_view content) {
+    std::filesystem::remove(folder_.path() / "rgb.txt");
+    std::filesystem::remove(folder_.path() / "depth.txt");
+    folder_.write(name, content);
+  }
+  [[nodiscard]] Result<Recording> open(const std::string& format = {}) const {
+    return open_recording(folder_.path(), {format, small_camera()});
+  }
+  TumFolder folder_;
+};
+
+TEST(TumRgbd, AListOfPairsAloneIsEnough) {
+  for (const char* name :
+       {"associations.txt", "associate.txt", "assoc.txt", "rgbd_assoc.txt", "fr1_desk.txt"}) {
+    for (const char* content :
+         {"# colour first\n10.0 rgb/0.png 10.01 depth/0.png\n10.1 rgb/1.png 10.11 depth/1.png\n",
+          "10.01 depth/0.png 10.0 rgb/0.png\n10.11 depth/1.png 10.1 rgb/1.png\n"}) {
+      SCOPED_TRACE(std::string(name) + ": " + content);
+      const ListOfPairs list(name, content);
+      EXPECT_EQ(recognise_format(list.folder_.path()), "tum");
+      const auto recording = list.open();
+      ASSERT_TRUE(recording) << recording.error().message;
+      EXPECT_TRUE(list.open("tum"));
+      ASSERT_EQ(recording->frames.size(), 2U);
+      EXPECT_EQ(recording->frames[1].timestamp_ns, 10'100'000'000);
+      EXPECT_EQ(recording->frames[1].depth_timestamp_ns, 10'110'000'000);
+      EXPECT_EQ(recording->load_frame(1)->depth_m(0, 0), 5001 / 5000.0F);
+      EXPECT_EQ(recording->load_frame(1)->color(0, 0), (Rgb{10, 20, 30}));
+      EXPECT_FALSE(recording->ground_truth.empty());
+    }
+  }
+}
+
+TEST(TumRgbd, ImagesOfAPairAreToldApartByTheirNames) {
+  const ListOfPairs list("associations.txt", "10.0 0_Depth.png 10.0 0_color.png\n");
+  std::filesystem::copy(list.folder_.path() / "depth/0.png", list.folder_.path() / "0_Depth.png");
+  std::filesystem::copy(list.folder_.path() / "rgb/0.png", list.folder_.path() / "0_color.png");
+  const auto recording = list.open();
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->load_frame(0)->depth_m(0, 0), 1);
+}
+
+TEST(TumRgbd, WhatIsWrongInAListOfPairsIsNamed) {
+  expect_contains(ListOfPairs("associations.txt", "10.0 rgb/0.png\n").open("tum").error().message,
+                  "associations.txt:1: expected 4 columns");
+  expect_contains(
+      ListOfPairs("associations.txt", "10.1 rgb/1.png 10.1 depth/1.png\n10.0 rgb/0.png 10.0 depth/0.png\n")
+          .open()
+          .error()
+          .message,
+      "associations.txt:2: time 10.0 does not come after 10.100000000");
+  const ListOfPairs two("associations.txt", "10.0 rgb/0.png 10.01 depth/0.png\n");
+  two.folder_.write("assoc.txt", "10.0 rgb/0.png 10.01 depth/0.png\n");
+  expect_contains(two.open().error().message, "several lists of pairs (assoc.txt, associations.txt)");
+  EXPECT_EQ(ListOfPairs("notes.txt", "10.0 rgb/0.png 10.01 depth/0.png\n").open().error().code,
+            ErrorCode::data_missing);
 }
 
 TEST(TumRgbd, MissingFolderAndUnknownFormat) {
