@@ -182,14 +182,14 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
   return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
 }
 
-void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
+void add_repetition_gates(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
   for (const auto& [side, runs] : {std::pair("BASE", &pair.base.runs), std::pair("NEW", &pair.fresh.runs)}) {
     for (std::size_t i = 1; i < runs->size(); ++i) {
       const std::string differs = difference(runs->front(), (*runs)[i]);
       if (differs.empty()) continue;
-      results.push_back(
-          regression("repetitions", fmt::format("repetitions of {} differ: {} ({} and {})", side, differs,
-                                                runs->front().folder.string(), (*runs)[i].folder.string())));
+      const std::string text = fmt::format("repetitions of {} differ: {} ({} and {})", side, differs,
+                                           runs->front().folder.string(), (*runs)[i].folder.string());
+      results.push_back(gates.repetitions_fail ? regression("repetitions", text) : note("repetitions", text));
       break;
     }
   }
@@ -285,13 +285,14 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates,
     run.gates.push_back(regression("data", other_data_text(base, fresh)));
     return run;
   }
-  const bool by_replicates = has_replicates_to_gate(run.runs, gates);
+  const bool repeats_exactly = run.runs.base.repeats_exactly && run.runs.fresh.repeats_exactly;
+  const bool by_replicates = !repeats_exactly || has_replicates_to_gate(run.runs, gates);
   if (!by_replicates) run.gates.push_back(status_gate(base, fresh, gates));
   add_config_gates(base, fresh, gates, run.gates);
-  add_repetition_gates(run.runs, run.gates);
+  add_repetition_gates(run.runs, gates, run.gates);
   if (by_replicates) {
     for (GateResult& result : replicate_gates(run.runs, gates)) run.gates.push_back(std::move(result));
-    if (base.replicate == fresh.replicate && base.status == fresh.status &&
+    if (repeats_exactly && base.replicate == fresh.replicate && base.status == fresh.status &&
         base.status != record::RunStatus::failed)
       add_divergence(run, gates);
     add_timed_gates(run, gates, confirming);

@@ -69,7 +69,9 @@ struct RunComparison {
 /// compared.
 [[nodiscard]] bool has_replicates_to_gate(const RunPair& pair, const Gates& gates);
 
-/// The gates of numbers of a pair with replicates, see replicate_gates.cpp: in place of those of single runs.
+/// The gates of numbers of a pair with replicates, or with runs of a program that does not repeat exactly,
+/// see replicate_gates.cpp: in place of those of single runs. Without has_replicates_to_gate() none of them
+/// fails.
 [[nodiscard]] std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates);
 
 /// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.

@@ -105,8 +105,25 @@ void join_lone_runs(std::vector<RunPair>& pairs) {
   std::erase_if(pairs, [](const RunPair& pair) { return pair.base.empty() && pair.fresh.empty(); });
 }
 
+/// By its definition, whose default is not deterministic.
+bool gives_same_bytes(const record::RunRecord& record) {
+  if (!record.program) return true;
+  const auto definition = config::parse_toml(record.program->definition, "definition");
+  return definition && std::ranges::any_of(definition->entries, [](const config::TomlEntry& entry) {
+           const bool* const value = config::plain_value<bool>(entry);
+           return entry.key == "deterministic" && value != nullptr && *value;
+         });
+}
+
 void set_replicates_apart(RunSide& side) {
   if (side.empty()) return;
+  side.repeats_exactly = gives_same_bytes(side.front().record);
+  if (!side.repeats_exactly) {
+    side.replicates.assign(std::make_move_iterator(side.runs.begin() + 1),
+                           std::make_move_iterator(side.runs.end()));
+    side.runs.resize(1);
+    return;
+  }
   const auto replicate_of = [](const run_files::FoundRun& run) { return run.record.replicate; };
   const int first = std::ranges::min(side.runs, {}, replicate_of).record.replicate;
   const auto others = std::ranges::stable_partition(
@@ -136,6 +153,7 @@ void set_labels(std::vector<RunPair>& pairs) {
 }  // namespace
 
 std::size_t RunSide::replicate_count() const {
+  if (!repeats_exactly) return runs.size() + replicates.size();
   std::set<int> different;
   for (const run_files::FoundRun* run : all()) different.insert(run->record.replicate);
   return different.size();

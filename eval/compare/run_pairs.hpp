@@ -15,9 +15,13 @@ struct RunSide {
   std::vector<run_files::FoundRun> runs;  ///< of the first replicate; several are repetitions, by folder
   std::vector<run_files::FoundRun> replicates;  ///< all others, by replicate
 
+  /// False of a program from outside that is not declared deterministic: its repetitions are like replicates,
+  /// and all but the first run are among them.
+  bool repeats_exactly = true;
+
   [[nodiscard]] bool empty() const { return runs.empty(); }
   [[nodiscard]] const run_files::FoundRun& front() const { return runs.front(); }
-  /// Runs of different replicates, the first one included.
+  /// Runs of different replicates, the first one included; of what does not repeat exactly, all runs.
   [[nodiscard]] std::size_t replicate_count() const;
   [[nodiscard]] std::vector<const run_files::FoundRun*> all() const;
 };

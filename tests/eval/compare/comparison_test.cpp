@@ -126,6 +126,61 @@ TEST_F(ComparisonTest, EqualRunsPassAndAreBitIdentical) {
             "10 s -> 10 s (ratio 1.000), not gated: 1 repetition; 5 are needed");
 }
 
+RunRecord record_of_program(double ate_m, int seed, const std::string& definition = "name = \"other\"\n") {
+  RunRecord record = good_record("fr1_rpy", "other");
+  record.config.clear();
+  record.program = RecordedProgram{definition, "1.0", seed};
+  record.repetition = seed;
+  record.metrics.ate.value->stats.rmse = ate_m;
+  return record;
+}
+
+TEST_F(ComparisonTest, AProgramThatIsNotDeterministicPassesAgainstItself) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    add("base", record_of_program(0.01 + 0.001 * seed, seed), trajectory(5, 0.001 * seed), seed);
+    add("new", record_of_program(0.0155 - 0.001 * seed, seed), trajectory(5, 0.002 * seed), seed);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_TRUE(comparison.passed()) << gate(comparison, "repetitions");
+  EXPECT_EQ(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "trajectory"), nullptr) << "no two of its trajectories are the same";
+}
+
+TEST_F(ComparisonTest, AProgramThatIsNotDeterministicFailsWhereItsRangesAreApart) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    add("base", record_of_program(0.01 + 0.001 * seed, seed), trajectory(), seed);
+    add("new", record_of_program(0.05 + 0.001 * seed, seed), trajectory(), seed);
+  }
+  const RunComparison comparison = compare();
+  ASSERT_NE(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "ate_rmse_m")->verdict, GateVerdict::regression);
+}
+
+TEST_F(ComparisonTest, FewRunsOfAProgramThatIsNotDeterministicAreShown) {
+  for (int seed = 1; seed <= 2; ++seed) {
+    add("base", record_of_program(0.01, seed), trajectory(), seed);
+    add("new", record_of_program(0.05, seed), trajectory(), seed);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_TRUE(comparison.passed());
+  ASSERT_NE(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "ate_rmse_m")->verdict, GateVerdict::note);
+  EXPECT_NE(gate(comparison, "ate_rmse_m")->not_gated.find("2 runs"), std::string::npos);
+}
+
+TEST_F(ComparisonTest, RepetitionsThatDifferFailUnlessTheGateSaysReport) {
+  const std::string declared = "name = \"other\"\ndeterministic = true\n";
+  for (int seed = 1; seed <= 2; ++seed)
+    for (const char* const side : {"base", "new"})
+      add(side, record_of_program(0.01 * seed, seed, declared), trajectory(), seed);
+  const RunComparison failed = compare();
+  ASSERT_NE(gate(failed, "repetitions"), nullptr);
+  EXPECT_TRUE(gate(failed, "repetitions")->fails);
+  Gates gates;
+  gates.repetitions_fail = false;
+  EXPECT_TRUE(compare(gates).passed());
+}
+
 TEST_F(ComparisonTest, WorseMetricIsARegressionAndBetterOneAnImprovement) {
   add("base", good_record());
   RunRecord record = good_record();
