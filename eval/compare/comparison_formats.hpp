@@ -35,11 +35,12 @@ struct ComparisonLine {
   std::string gate;
   std::string message;
 };
-/// Regressions, improvements, suspects, notes; with `all` what is unchanged, too. Divergences and times that
-/// are not gated stand in comparison_remarks() unless `all`.
+/// Regressions, improvements, possible slowdowns, notes; with `all` what is unchanged, too. Divergences and
+/// times that are not gated stand in comparison_remarks() unless `all`.
 [[nodiscard]] std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bool all);
 
-/// "FAIL: 1 regression, 2 improvements, 0 suspects in 24 runs; trajectories: 22 bit-identical, 2 diverging".
+/// "FAIL: 1 regression, 2 improvements, 0 possible slowdowns in 24 runs; trajectories: 22 bit-identical, 2
+/// different".
 [[nodiscard]] std::string comparison_summary(const RunComparison& comparison);
 
 /// Sentences beneath the lines: where runs diverge, the earliest first; times that were not gated; notes.

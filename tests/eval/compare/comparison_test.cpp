@@ -181,6 +181,48 @@ TEST_F(ComparisonTest, RepetitionsThatDifferFailUnlessTheGateSaysReport) {
   EXPECT_TRUE(compare(gates).passed());
 }
 
+TEST_F(ComparisonTest, PairsRunsThatDifferInIgnoredOptions) {
+  const auto with = [](std::int64_t iterations, double voxel_m) {
+    RunRecord record = good_record();
+    record.config = {{"iekf.max_iterations", iterations, "--set"},
+                     {"tsdf.voxel_m", voxel_m, "--set"},
+                     {"imu.use", true, "variant full"}};
+    return record;
+  };
+  add("base", with(4, 0.02));
+  RunRecord changed = with(6, 0.03);
+  changed.metrics.ate.value->stats.rmse *= 2;
+  add("new", changed);
+  const auto compared = [&](const IgnoredOptions& ignored) {
+    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored);
+  };
+  EXPECT_EQ(compared({}).runs.size(), 2U);
+  EXPECT_EQ(compared({"iekf."}).runs.size(), 2U) << "another one differs, too";
+  const RunComparison paired = compared({"iekf.", "tsdf.voxel_m"});
+  ASSERT_EQ(paired.runs.size(), 1U);
+  ASSERT_NE(gate(paired, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(paired, "ate_rmse_m")->verdict, GateVerdict::regression);
+  ASSERT_NE(gate(paired, "options"), nullptr);
+  EXPECT_EQ(gate(paired, "options")->verdict, GateVerdict::note);
+  EXPECT_EQ(gate(paired, "options")->message,
+            "ignored: iekf.max_iterations = 4 and 6, tsdf.voxel_m = 0.02 and 0.03");
+  EXPECT_EQ(gate(paired, "config"), nullptr) << "what is ignored is no changed default";
+  EXPECT_TRUE(paired.notes.empty());
+  EXPECT_EQ(compared({"iekf.", "tsdf.voxel_m", "tsdf.gone"}).notes.size(), 1U) << "no run has it";
+}
+
+TEST_F(ComparisonTest, AnIgnoredOptionMayBeSetOnOneSideOnly) {
+  add("base", good_record());
+  RunRecord set = good_record();
+  set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
+  add("new", set);
+  const auto compared = compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {},
+                                     {"iekf.max_iterations"});
+  ASSERT_EQ(compared.runs.size(), 1U);
+  EXPECT_TRUE(compared.passed());
+  ASSERT_NE(gate(compared, "options"), nullptr);
+}
+
 TEST_F(ComparisonTest, WorseMetricIsARegressionAndBetterOneAnImprovement) {
   add("base", good_record());
   RunRecord record = good_record();
@@ -325,8 +367,9 @@ TEST_F(ComparisonTest, DivergencesAreNamedTheEarliestFirst) {
   EXPECT_EQ(comparison.identical(), 1U);
   const auto diverging = comparison.diverging();
   ASSERT_EQ(diverging.size(), 2U);
-  EXPECT_EQ(diverging[0]->divergence->text(), "diverges at frame 12 (stamp 12.000000000): moved by 1 mm");
-  EXPECT_EQ(diverging[1]->divergence->text(), "diverges at frame 105 (stamp 5.000000000): moved by 0.2 mm");
+  EXPECT_EQ(diverging[0]->divergence->text(), "differs from frame 12 on (stamp 12.000000000): moved by 1 mm");
+  EXPECT_EQ(diverging[1]->divergence->text(),
+            "differs from frame 105 on (stamp 5.000000000): moved by 0.2 mm");
   Gates gates;
   gates.divergence_fails = true;
   EXPECT_EQ(compare(gates).failures(), 2U);
@@ -339,7 +382,7 @@ TEST_F(ComparisonTest, AFrameTrackedOnOneSideIsADivergence) {
   tum.erase(row, tum.find('\n', row) + 1 - row);
   add("new", good_record(), tum);
   EXPECT_EQ(compare().runs[0].divergence->text(),
-            "diverges at frame 7 (stamp 7.000000000): only BASE tracked it");
+            "differs from frame 7 on (stamp 7.000000000): only BASE tracked it");
 }
 
 TEST_F(ComparisonTest, ADamagedTrajectoryIsARegression) {
