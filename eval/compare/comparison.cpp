@@ -63,7 +63,7 @@ GateResult judge(const registry::RunMetric& metric, const MetricTolerance& toler
   const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(base));
   const double change = fresh - base;
   if (std::abs(change) <= allowed) return result;
-  const std::string text = fmt::format("{}, allowed is {}", change_text(base, fresh, metric.unit),
+  const std::string text = fmt::format("{}, tolerance {}", change_text(base, fresh, metric.unit),
                                        quantity_text(allowed, metric.unit));
   const bool better = (tolerance.better == registry::Better::smaller && change < 0) ||
                       (tolerance.better == registry::Better::larger && change > 0);
@@ -120,10 +120,34 @@ std::string differing_options_text(const std::vector<std::string>& differences) 
                      differences.size() - kMostNamed);
 }
 
+std::map<std::string, std::string> ignored_options_of(const record::RunRecord& record,
+                                                      const IgnoredOptions& ignored) {
+  std::map<std::string, std::string> options;
+  for (const record::RecordedOption& option : record.config)
+    if (is_ignored(ignored, option.key)) options[option.key] = config::to_toml(option.value);
+  return options;
+}
+
+/// Which of the ignored options differ.
+void add_ignored_options(const record::RunRecord& base, const record::RunRecord& fresh,
+                         const IgnoredOptions& ignored, std::vector<GateResult>& results) {
+  const auto before = ignored_options_of(base, ignored);
+  std::vector<std::string> differences;
+  for (const auto& [key, value] : ignored_options_of(fresh, ignored)) {
+    const auto there = before.find(key);
+    if (there != before.end() && there->second != value)
+      differences.push_back(fmt::format("{} = {} and {}", key, there->second, value));
+  }
+  if (!differences.empty())
+    results.push_back(note("options", fmt::format("ignored: {}", fmt::join(differences, ", "))));
+}
+
 void add_config_gates(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates,
-                      std::vector<GateResult>& results) {
-  const auto before = defaults_of(base);
-  const auto after = defaults_of(fresh);
+                      const IgnoredOptions& ignored, std::vector<GateResult>& results) {
+  auto before = defaults_of(base);
+  auto after = defaults_of(fresh);
+  for (auto* const options : {&before, &after})
+    std::erase_if(*options, [&](const auto& option) { return is_ignored(ignored, option.first); });
   // A run that never began, or that was made elsewhere, has no configuration to compare.
   if (before.empty() || after.empty()) return;
   std::vector<std::string> changed;
@@ -182,14 +206,14 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
   return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
 }
 
-void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
+void add_repetition_gates(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
   for (const auto& [side, runs] : {std::pair("BASE", &pair.base.runs), std::pair("NEW", &pair.fresh.runs)}) {
     for (std::size_t i = 1; i < runs->size(); ++i) {
       const std::string differs = difference(runs->front(), (*runs)[i]);
       if (differs.empty()) continue;
-      results.push_back(
-          regression("repetitions", fmt::format("repetitions of {} differ: {} ({} and {})", side, differs,
-                                                runs->front().folder.string(), (*runs)[i].folder.string())));
+      const std::string text = fmt::format("repetitions of {} differ: {} ({} and {})", side, differs,
+                                           runs->front().folder.string(), (*runs)[i].folder.string());
+      results.push_back(gates.repetitions_fail ? regression("repetitions", text) : note("repetitions", text));
       break;
     }
   }
@@ -220,8 +244,8 @@ void add_divergence(ComparedRun& run, const Gates& gates) {
   run.is_identical = !run.divergence.has_value();
   GateResult result{"trajectory", GateVerdict::unchanged, false, {}};
   if (run.divergence) {
-    result = gates.divergence_fails ? regression("trajectory", run.divergence->text())
-                                    : note("trajectory", run.divergence->text());
+    const std::string text = "the trajectory " + run.divergence->text();
+    result = gates.divergence_fails ? regression("trajectory", text) : note("trajectory", text);
   }
   run.gates.push_back(std::move(result));
 }
@@ -250,20 +274,20 @@ bool simulated_anew(const record::RunRecord& base, const record::RunRecord& fres
   return before.data == "simulated" && after.data == "simulated" && before.frames == after.frames;
 }
 
-void add_timed_gates(ComparedRun& run, const Gates& gates,
-                     const std::vector<run_files::FoundRun>& confirming) {
+void add_timed_gates(ComparedRun& run, const Gates& gates, const std::vector<run_files::FoundRun>& confirming,
+                     const IgnoredOptions& ignored) {
   const auto is_ok = [](const RunSide& side) { return side.front().record.status == record::RunStatus::ok; };
   if (!is_ok(run.runs.base) || !is_ok(run.runs.fresh)) return;
   std::vector<run_files::FoundRun> again;
   for (const run_files::FoundRun& found : confirming) {
-    if (experiment_of(found) == run.runs.experiment) again.push_back(found);
+    if (experiment_of(found, ignored) == run.runs.experiment) again.push_back(found);
   }
   for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
     run.gates.push_back(std::move(result));
 }
 
-ComparedRun compare_pair(RunPair pair, const Gates& gates,
-                         const std::vector<run_files::FoundRun>& confirming) {
+ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<run_files::FoundRun>& confirming,
+                         const IgnoredOptions& ignored) {
   ComparedRun run{std::move(pair), {}, std::nullopt, false};
   if (run.runs.fresh.empty()) {
     run.gates.push_back(regression("run", "missing in NEW"));
@@ -285,16 +309,18 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates,
     run.gates.push_back(regression("data", other_data_text(base, fresh)));
     return run;
   }
-  const bool by_replicates = has_replicates_to_gate(run.runs, gates);
+  const bool repeats_exactly = run.runs.base.repeats_exactly && run.runs.fresh.repeats_exactly;
+  const bool by_replicates = !repeats_exactly || has_replicates_to_gate(run.runs, gates);
   if (!by_replicates) run.gates.push_back(status_gate(base, fresh, gates));
-  add_config_gates(base, fresh, gates, run.gates);
-  add_repetition_gates(run.runs, run.gates);
+  add_ignored_options(base, fresh, ignored, run.gates);
+  add_config_gates(base, fresh, gates, ignored, run.gates);
+  add_repetition_gates(run.runs, gates, run.gates);
   if (by_replicates) {
     for (GateResult& result : replicate_gates(run.runs, gates)) run.gates.push_back(std::move(result));
-    if (base.replicate == fresh.replicate && base.status == fresh.status &&
+    if (repeats_exactly && base.replicate == fresh.replicate && base.status == fresh.status &&
         base.status != record::RunStatus::failed)
       add_divergence(run, gates);
-    add_timed_gates(run, gates, confirming);
+    add_timed_gates(run, gates, confirming, ignored);
     return run;
   }
   // Where one side failed the other's numbers would only repeat it.
@@ -302,7 +328,7 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates,
     if (fresh.status == base.status) add_metric_gates(run.runs, gates, run.gates);
     add_divergence(run, gates);
   }
-  add_timed_gates(run, gates, confirming);
+  add_timed_gates(run, gates, confirming, ignored);
   return run;
 }
 
@@ -316,6 +342,14 @@ void add_unused_overrides(const Gates& gates, RunComparison& comparison) {
   }
 }
 
+bool knows(const std::vector<run_files::FoundRun>& runs, const std::string& key) {
+  return std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
+    return std::ranges::any_of(run.record.config, [&](const record::RecordedOption& option) {
+      return is_ignored({key}, option.key);
+    });
+  });
+}
+
 }  // namespace
 
 std::string_view to_string(GateVerdict verdict) {
@@ -325,7 +359,7 @@ std::string_view to_string(GateVerdict verdict) {
     case GateVerdict::improvement:
       return "IMPROVEMENT";
     case GateVerdict::suspect:
-      return "SUSPECT";
+      return "POSSIBLE SLOWDOWN";
     case GateVerdict::note:
       return "note";
     case GateVerdict::unchanged:
@@ -375,11 +409,15 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
 
 RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
                            const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
-                           const std::vector<run_files::FoundRun>& confirming) {
+                           const std::vector<run_files::FoundRun>& confirming,
+                           const IgnoredOptions& ignored) {
   RunComparison comparison;
-  for (RunPair& pair : pair_runs(base, fresh)) {
-    comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming));
+  for (RunPair& pair : pair_runs(base, fresh, ignored)) {
+    comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming, ignored));
   }
+  for (const std::string& key : ignored)
+    if (!knows(base, key) && !knows(fresh, key))
+      comparison.notes.push_back(fmt::format("no run has an ignored option '{}'", key));
   add_unused_overrides(gates, comparison);
   return comparison;
 }

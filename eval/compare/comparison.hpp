@@ -60,16 +60,20 @@ struct RunComparison {
 /// Deterministic numbers are taken from the first run of each side; where both sides have enough replicates,
 /// numbers are compared by their ranges. `confirming` are the runs of a rerun of NEW (empty: none was made):
 /// a time or a size that failed is a regression only if it fails there as well, against the same baseline. A
-/// trajectory that is damaged or cannot be read is a regression with that reason.
+/// trajectory that is damaged or cannot be read is a regression with that reason. Differences of ignored
+/// options are a note (gate "options"); a key that no run knows is a note, too.
 [[nodiscard]] RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
                                          const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
-                                         const std::vector<run_files::FoundRun>& confirming = {});
+                                         const std::vector<run_files::FoundRun>& confirming = {},
+                                         const IgnoredOptions& ignored = {});
 
 /// Whether both sides have so many replicates (Gates::min_repetitions) that their distributions can be
 /// compared.
 [[nodiscard]] bool has_replicates_to_gate(const RunPair& pair, const Gates& gates);
 
-/// The gates of numbers of a pair with replicates, see replicate_gates.cpp: in place of those of single runs.
+/// The gates of numbers of a pair with replicates, or with runs of a program that does not repeat exactly,
+/// see replicate_gates.cpp: in place of those of single runs. Without has_replicates_to_gate() none of them
+/// fails.
 [[nodiscard]] std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates);
 
 /// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.

@@ -43,7 +43,7 @@ struct ComparisonLine {
 [[nodiscard]] std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bool all);
 
 /// "FAIL: 1 regression, 2 improvements, 0 possible slowdowns in 24 runs; trajectories: 22 bit-identical, 2
-/// diverging".
+/// different".
 [[nodiscard]] std::string comparison_summary(const RunComparison& comparison);
 
 /// Sentences beneath the lines: where runs diverge, the earliest first; times that were not gated; notes.

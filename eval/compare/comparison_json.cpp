@@ -66,7 +66,7 @@ std::string comparison_json(const RunComparison& comparison) {
                               {"failures", comparison.failures()},
                               {"regressions", comparison.count(GateVerdict::regression)},
                               {"improvements", comparison.count(GateVerdict::improvement)},
-                              {"suspects", comparison.count(GateVerdict::suspect)},
+                              {"possible_slowdowns", comparison.count(GateVerdict::suspect)},
                               {"notes", comparison.notes},
                               {"bit_identical", comparison.identical()},
                               {"diverging", moved_first},

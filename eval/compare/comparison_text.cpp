@@ -112,7 +112,7 @@ std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bo
 
 std::string comparison_summary(const RunComparison& comparison) {
   return fmt::format(
-      "{}: {}, {}, {} in {}; trajectories: {} bit-identical, {} diverging",
+      "{}: {}, {}, {} in {}; trajectories: {} bit-identical, {} different",
       comparison.passed() ? "PASS" : "FAIL", counted(comparison.count(GateVerdict::regression), "regression"),
       counted(comparison.count(GateVerdict::improvement), "improvement"),
       counted(comparison.count(GateVerdict::suspect), "possible slowdown"),
@@ -122,7 +122,8 @@ std::string comparison_summary(const RunComparison& comparison) {
 std::vector<std::string> comparison_remarks(const RunComparison& comparison) {
   std::vector<std::string> remarks;
   for (const ComparedRun* run : comparison.diverging())
-    remarks.push_back(fmt::format("{}: {}", printable(run->runs.label, kAll), run->divergence->text()));
+    remarks.push_back(
+        fmt::format("{}: the trajectory {}", printable(run->runs.label, kAll), run->divergence->text()));
   for (const ComparedRun& run : comparison.runs) {
     for (const GateResult& gate : run.gates) {
       if (gate.gate == "trajectory" && gate.verdict == GateVerdict::note && !run.divergence)

@@ -89,7 +89,7 @@ Divergence at_row(const Row& row, std::size_t index, const fs::path& base, const
 }  // namespace
 
 std::string Divergence::text() const {
-  const std::string where = fmt::format("trajectory differs from frame {} on (stamp {})", frame, stamp);
+  const std::string where = fmt::format("differs from frame {} on (stamp {})", frame, stamp);
   if (!only_in.empty()) return fmt::format("{}: only {} tracked it", where, only_in);
   if (moved_m.value_or(0) == 0)
     return fmt::format("{}: turned by {:.3g} deg", where, turned_rad.value_or(0) * kDegreesPerRadian);

@@ -18,7 +18,7 @@ struct Divergence {
   std::optional<double> turned_rad;  ///< between both rotations
   std::string only_in;               ///< "BASE" or "NEW" if only that side tracked the frame
 
-  /// "trajectory differs from frame 12 on (stamp 0.400000000): moved by 0.031 mm"
+  /// "differs from frame 12 on (stamp 0.400000000): moved by 0.031 mm"
   [[nodiscard]] std::string text() const;
 };
 

@@ -15,9 +15,10 @@ namespace fusebench::compare {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kTopKeys = {
-    "improvements", "changed_defaults", "changed_simulation", "divergence", "tolerance",
+constexpr std::array<std::string_view, 9> kTopKeys = {
+    "improvements", "changed_defaults", "changed_simulation", "repetitions", "divergence", "tolerance",
     "metrics",      "timing",           "overrides"};
+constexpr std::size_t kFirstTable = 5;
 constexpr std::array<std::string_view, 2> kToleranceKeys = {"relative", "absolute"};
 constexpr std::array<std::string_view, 3> kMetricKeys = {"relative", "absolute", "better"};
 constexpr std::array<std::string_view, 3> kTimingKeys = {"alpha", "min_repetitions", "factors"};
@@ -148,6 +149,7 @@ Result<void> read_entry(const config::TomlEntry& entry, Gates& gates) {
   if (key == "improvements") return store_fails(entry, gates.improvements_fail);
   if (key == "changed_defaults") return store_fails(entry, gates.changed_defaults_fail);
   if (key == "changed_simulation") return store_fails(entry, gates.changed_simulation_fails);
+  if (key == "repetitions") return store_fails(entry, gates.repetitions_fail);
   if (key == "divergence") return store_fails(entry, gates.divergence_fails);
   const auto dot = key.find('.');
   const std::string table = key.substr(0, dot);
@@ -199,7 +201,7 @@ Result<void> read_overrides(const config::TomlDocument& document, Gates& gates) 
 Result<void> check_tables(const config::TomlDocument& document) {
   for (const config::TomlTable& table : document.tables) {
     const std::string name = table.key.substr(0, table.key.find_first_of(".["));
-    if (!lists({kTopKeys.begin() + 3, kTopKeys.end()}, name))
+    if (!lists({kTopKeys.begin() + kFirstTable, kTopKeys.end()}, name))
       return suites::unknown_key(table.place, name, kTopKeys, "gates");
   }
   return {};

@@ -38,6 +38,7 @@ struct Gates {
   bool improvements_fail = true;         ///< a baseline that is too bad hides what gets worse later
   bool changed_defaults_fail = true;     ///< options that nobody set and that are not what they were
   bool changed_simulation_fails = true;  ///< a simulated recording of as many frames that has other bytes
+  bool repetitions_fail = true;          ///< repetitions of one side that are not the same
   bool divergence_fails = false;         ///< a trajectory that differs while every number keeps its tolerance
   std::vector<MetricTolerance> tolerances;  ///< of gated_metrics(), in their order
   std::vector<double> factors;              ///< of gated_costs(), in their order

@@ -61,6 +61,19 @@ GateResult ok_gate(const RunSide& base, const RunSide& fresh, std::size_t base_o
   return result;
 }
 
+/// Ranges of few runs are apart by chance: they are shown and do not fail.
+void do_not_gate(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
+  const std::size_t fewest = std::min(pair.base.replicate_count(), pair.fresh.replicate_count());
+  for (GateResult& result : results) {
+    if (!result.base || result.verdict == GateVerdict::unchanged) continue;
+    result.verdict = GateVerdict::note;
+    result.fails = false;
+    result.not_gated = fmt::format("{} run{} of a program that is not deterministic; {} are needed", fewest,
+                                   fewest == 1 ? "" : "s", gates.min_repetitions);
+    result.message += ", not gated: " + result.not_gated;
+  }
+}
+
 }  // namespace
 
 bool has_replicates_to_gate(const RunPair& pair, const Gates& gates) {
@@ -84,6 +97,7 @@ std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates)
                          std::string(metric.unit), before->median});
     }
   }
+  if (!has_replicates_to_gate(pair, gates)) do_not_gate(pair, gates, results);
   return results;
 }
 

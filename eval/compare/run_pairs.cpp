@@ -105,8 +105,25 @@ void join_lone_runs(std::vector<RunPair>& pairs) {
   std::erase_if(pairs, [](const RunPair& pair) { return pair.base.empty() && pair.fresh.empty(); });
 }
 
+/// By its definition, whose default is not deterministic.
+bool gives_same_bytes(const record::RunRecord& record) {
+  if (!record.program) return true;
+  const auto definition = config::parse_toml(record.program->definition, "definition");
+  return definition && std::ranges::any_of(definition->entries, [](const config::TomlEntry& entry) {
+           const bool* const value = config::plain_value<bool>(entry);
+           return entry.key == "deterministic" && value != nullptr && *value;
+         });
+}
+
 void set_replicates_apart(RunSide& side) {
   if (side.empty()) return;
+  side.repeats_exactly = gives_same_bytes(side.front().record);
+  if (!side.repeats_exactly) {
+    side.replicates.assign(std::make_move_iterator(side.runs.begin() + 1),
+                           std::make_move_iterator(side.runs.end()));
+    side.runs.resize(1);
+    return;
+  }
   const auto replicate_of = [](const run_files::FoundRun& run) { return run.record.replicate; };
   const int first = std::ranges::min(side.runs, {}, replicate_of).record.replicate;
   const auto others = std::ranges::stable_partition(
@@ -135,7 +152,14 @@ void set_labels(std::vector<RunPair>& pairs) {
 
 }  // namespace
 
+bool is_ignored(const IgnoredOptions& ignored, std::string_view key) {
+  return std::ranges::any_of(ignored, [&](const std::string& name) {
+    return key == name || (name.ends_with('.') && key.starts_with(name));
+  });
+}
+
 std::size_t RunSide::replicate_count() const {
+  if (!repeats_exactly) return runs.size() + replicates.size();
   std::set<int> different;
   for (const run_files::FoundRun* run : all()) different.insert(run->record.replicate);
   return different.size();
@@ -149,7 +173,7 @@ std::vector<const run_files::FoundRun*> RunSide::all() const {
   return all;
 }
 
-run_files::RunIdentity experiment_of(const run_files::FoundRun& run) {
+run_files::RunIdentity experiment_of(const run_files::FoundRun& run, const IgnoredOptions& ignored) {
   run_files::RunIdentity experiment = run_files::without_repetition(run_files::identity_of(run));
   experiment.fingerprint.clear();
   experiment.config_hash.clear();
@@ -157,7 +181,8 @@ run_files::RunIdentity experiment_of(const run_files::FoundRun& run) {
   experiment.truth.clear();
   const config::EffectiveConfig defaults = defaults_of(experiment.variant);
   for (const record::RecordedOption& option : run.record.config) {
-    if (run_files::is_edit(option.origin) && !is_default(defaults, option))
+    if (run_files::is_edit(option.origin) && !is_ignored(ignored, option.key) &&
+        !is_default(defaults, option))
       experiment.options.emplace_back(option.key, config::to_toml(option.value));
   }
   std::ranges::sort(experiment.options);
@@ -171,11 +196,11 @@ std::string options_text(const run_files::RunIdentity& experiment) {
 }
 
 std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
-                               const std::vector<run_files::FoundRun>& fresh) {
+                               const std::vector<run_files::FoundRun>& fresh, const IgnoredOptions& ignored) {
   std::map<decltype(order_of(run_files::RunIdentity{})), RunPair> by_experiment;
   for (const auto& [runs, side] : {std::pair(&base, &RunPair::base), std::pair(&fresh, &RunPair::fresh)}) {
     for (const run_files::FoundRun& run : *runs) {
-      const run_files::RunIdentity experiment = experiment_of(run);
+      const run_files::RunIdentity experiment = experiment_of(run, ignored);
       RunPair& pair = by_experiment[order_of(experiment)];
       pair.experiment = experiment;
       (pair.*side).runs.push_back(run);

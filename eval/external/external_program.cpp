@@ -2,20 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 #include "core/io/input_file.hpp"
+#include "eval/external/program_files.hpp"
 #include "eval/external/system_name.hpp"
 
 namespace fusebench::external {
@@ -215,27 +213,6 @@ Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program
   return read_trajectory_entry(entry, std::string_view(key).substr(kTrajectory.size()), program.trajectory);
 }
 
-/// The file of a program, as the system finds it; empty if there is none.
-fs::path file_of_program(const std::string& name) {
-  if (name.find('/') != std::string::npos)
-    return access(name.c_str(), X_OK) == 0 ? fs::path(name) : fs::path();
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / name;
-    if (access(file.c_str(), X_OK) == 0 && fs::is_regular_file(file)) return file;
-  }
-  return {};
-}
-
-/// {folder} as what it stands for.
-std::string with_folder(std::string argument, const fs::path& folder) {
-  constexpr std::string_view kFolder = "{folder}";
-  for (std::size_t at = argument.find(kFolder); at != std::string::npos; at = argument.find(kFolder, at))
-    argument.replace(at, kFolder.size(), folder.string());
-  return argument;
-}
-
 /// Its first line; or why the program cannot run here.
 void ask_version(ExternalProgram& program) {
   const std::vector<std::string>& command = program.version_command;
@@ -258,18 +235,13 @@ void ask_version(ExternalProgram& program) {
 Result<void> identify(ExternalProgram& program) {
   io::Fingerprint identity;
   if (auto added = identity.add_file(program.file); !added) return tl::unexpected(added.error());
-  for (const std::string& argument : program.command) {
-    if (argument.find("{folder}") == std::string::npos) continue;
-    const std::string named = with_folder(argument, program.folder());
-    if (!fs::is_regular_file(named)) continue;
-    if (auto added = identity.add_file(named); !added) return tl::unexpected(added.error());
-  }
-  const fs::path executable = file_of_program(program.command.front());
-  if (executable.empty()) {
+  if (file_of_program(program.command.front()).empty()) {
     program.absent = fmt::format("the program {} is not installed", program.command.front());
     return {};
   }
-  if (auto added = identity.add_file(executable); !added) return tl::unexpected(added.error());
+  for (const fs::path& named : files_of_command(program.command, program.folder())) {
+    if (auto added = identity.add_file(named); !added) return tl::unexpected(added.error());
+  }
   identity.add(program.version);
   program.identity = identity.hex();
   return {};

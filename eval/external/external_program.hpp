@@ -58,8 +58,7 @@ struct ExternalProgram {
   // What find_installed() finds:
   std::string version;  ///< what it says of itself; empty if it cannot be asked
   std::string absent;   ///< why it cannot run here; empty if it can
-  /// 32 hex digits of the definition, of the program's file and version, and of the files of {folder} that
-  /// the command names.
+  /// 32 hex digits of the definition, of the files of the program (files_of_command()) and of its version.
   std::string identity;
 
   [[nodiscard]] std::filesystem::path folder() const { return file.parent_path(); }

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -6,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/nearest_name.hpp"
+#include "core/config/config_access.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
@@ -27,10 +32,29 @@ struct CompareOptions {
   std::filesystem::path gates;
   std::filesystem::path confirm;
   std::filesystem::path out;
+  compare::IgnoredOptions ignored;
   std::string format = "table";
   bool all = false;
   std::optional<std::size_t> width;
 };
+
+/// A beginning without its dot is the usual mistake.
+Result<void> check_ignored(const compare::IgnoredOptions& ignored) {
+  std::vector<std::string> keys;
+  for (const config::OptionRow& row : config::describe_options(config::EffectiveConfig{}.values()))
+    keys.push_back(row.key);
+  for (const std::string& name : ignored) {
+    if (std::ranges::any_of(keys, [&](const std::string& key) { return compare::is_ignored({name}, key); }))
+      continue;
+    const bool is_group =
+        std::ranges::any_of(keys, [&](const std::string& key) { return key.starts_with(name + "."); });
+    return fail(ErrorCode::usage,
+                fmt::format("--ignore-options {}: no option{}", name, nearest_hint(name, keys)),
+                is_group ? fmt::format("all options of the group: --ignore-options {}.", name)
+                         : "`fusebench list options` names them");
+  }
+  return {};
+}
 
 Result<int> compare(const CompareOptions& options) {
   const auto format = compare::parse_comparison_format(options.format);
@@ -38,6 +62,7 @@ Result<int> compare(const CompareOptions& options) {
   const auto gates =
       options.gates.empty() ? Result<compare::Gates>(compare::Gates()) : compare::read_gates(options.gates);
   if (!gates) return tl::unexpected(gates.error());
+  if (auto known = check_ignored(options.ignored); !known) return tl::unexpected(known.error());
   const auto base = run_files::find_runs(options.base);
   if (!base) return tl::unexpected(base.error());
   const auto fresh = run_files::find_runs(options.fresh);
@@ -45,7 +70,8 @@ Result<int> compare(const CompareOptions& options) {
   const auto confirming = options.confirm.empty() ? Result<std::vector<run_files::FoundRun>>()
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
-  const compare::RunComparison comparison = compare::compare_runs(*base, *fresh, *gates, *confirming);
+  const compare::RunComparison comparison =
+      compare::compare_runs(*base, *fresh, *gates, *confirming, options.ignored);
   // A file is no terminal, whatever standard output is.
   const std::size_t width =
       options.out.empty() ? console::table_width(options.width) : options.width.value_or(0);
@@ -76,6 +102,12 @@ console::Verb add_compare_verb(CLI::App& app) {
   verb->add_option("--confirm", options->confirm,
                    "Repeated runs of NEW: times and memory fail their gates only if these confirm it")
       ->type_name("DIR");
+  verb->add_option(
+          "--ignore-options", options->ignored,
+          "Compares runs that differ in this option, or in all whose keys begin so (patches.); may be "
+          "repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY");
   verb->add_option(
           "--format", options->format,
           "table, markdown, json, junit (a test case a gate), and the numbers of NEW as gbench (Google "

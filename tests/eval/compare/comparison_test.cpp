@@ -126,6 +126,103 @@ TEST_F(ComparisonTest, EqualRunsPassAndAreBitIdentical) {
             "10 s -> 10 s (ratio 1.000), not gated: 1 repetition; 5 are needed");
 }
 
+RunRecord record_of_program(double ate_m, int seed, const std::string& definition = "name = \"other\"\n") {
+  RunRecord record = good_record("fr1_rpy", "other");
+  record.config.clear();
+  record.program = RecordedProgram{definition, "1.0", seed};
+  record.repetition = seed;
+  record.metrics.ate.value->stats.rmse = ate_m;
+  return record;
+}
+
+TEST_F(ComparisonTest, AProgramThatIsNotDeterministicPassesAgainstItself) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    add("base", record_of_program(0.01 + 0.001 * seed, seed), trajectory(5, 0.001 * seed), seed);
+    add("new", record_of_program(0.0155 - 0.001 * seed, seed), trajectory(5, 0.002 * seed), seed);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_TRUE(comparison.passed()) << gate(comparison, "repetitions");
+  EXPECT_EQ(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "trajectory"), nullptr) << "no two of its trajectories are the same";
+}
+
+TEST_F(ComparisonTest, AProgramThatIsNotDeterministicFailsWhereItsRangesAreApart) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    add("base", record_of_program(0.01 + 0.001 * seed, seed), trajectory(), seed);
+    add("new", record_of_program(0.05 + 0.001 * seed, seed), trajectory(), seed);
+  }
+  const RunComparison comparison = compare();
+  ASSERT_NE(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "ate_rmse_m")->verdict, GateVerdict::regression);
+}
+
+TEST_F(ComparisonTest, FewRunsOfAProgramThatIsNotDeterministicAreShown) {
+  for (int seed = 1; seed <= 2; ++seed) {
+    add("base", record_of_program(0.01, seed), trajectory(), seed);
+    add("new", record_of_program(0.05, seed), trajectory(), seed);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_TRUE(comparison.passed());
+  ASSERT_NE(gate(comparison, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(comparison, "ate_rmse_m")->verdict, GateVerdict::note);
+  EXPECT_NE(gate(comparison, "ate_rmse_m")->not_gated.find("2 runs"), std::string::npos);
+}
+
+TEST_F(ComparisonTest, RepetitionsThatDifferFailUnlessTheGateSaysReport) {
+  const std::string declared = "name = \"other\"\ndeterministic = true\n";
+  for (int seed = 1; seed <= 2; ++seed)
+    for (const char* const side : {"base", "new"})
+      add(side, record_of_program(0.01 * seed, seed, declared), trajectory(), seed);
+  const RunComparison failed = compare();
+  ASSERT_NE(gate(failed, "repetitions"), nullptr);
+  EXPECT_TRUE(gate(failed, "repetitions")->fails);
+  Gates gates;
+  gates.repetitions_fail = false;
+  EXPECT_TRUE(compare(gates).passed());
+}
+
+TEST_F(ComparisonTest, PairsRunsThatDifferInIgnoredOptions) {
+  const auto with = [](std::int64_t iterations, double voxel_m) {
+    RunRecord record = good_record();
+    record.config = {{"iekf.max_iterations", iterations, "--set"},
+                     {"tsdf.voxel_m", voxel_m, "--set"},
+                     {"imu.use", true, "variant full"}};
+    return record;
+  };
+  add("base", with(4, 0.02));
+  RunRecord changed = with(6, 0.03);
+  changed.metrics.ate.value->stats.rmse *= 2;
+  add("new", changed);
+  const auto compared = [&](const IgnoredOptions& ignored) {
+    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored);
+  };
+  EXPECT_EQ(compared({}).runs.size(), 2U);
+  EXPECT_EQ(compared({"iekf."}).runs.size(), 2U) << "another one differs, too";
+  const RunComparison paired = compared({"iekf.", "tsdf.voxel_m"});
+  ASSERT_EQ(paired.runs.size(), 1U);
+  ASSERT_NE(gate(paired, "ate_rmse_m"), nullptr);
+  EXPECT_EQ(gate(paired, "ate_rmse_m")->verdict, GateVerdict::regression);
+  ASSERT_NE(gate(paired, "options"), nullptr);
+  EXPECT_EQ(gate(paired, "options")->verdict, GateVerdict::note);
+  EXPECT_EQ(gate(paired, "options")->message,
+            "ignored: iekf.max_iterations = 4 and 6, tsdf.voxel_m = 0.02 and 0.03");
+  EXPECT_EQ(gate(paired, "config"), nullptr) << "what is ignored is no changed default";
+  EXPECT_TRUE(paired.notes.empty());
+  EXPECT_EQ(compared({"iekf.", "tsdf.voxel_m", "tsdf.gone"}).notes.size(), 1U) << "no run has it";
+}
+
+TEST_F(ComparisonTest, AnIgnoredOptionMayBeSetOnOneSideOnly) {
+  add("base", good_record());
+  RunRecord set = good_record();
+  set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
+  add("new", set);
+  const auto compared = compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {},
+                                     {"iekf.max_iterations"});
+  ASSERT_EQ(compared.runs.size(), 1U);
+  EXPECT_TRUE(compared.passed());
+  ASSERT_NE(gate(compared, "options"), nullptr);
+}
+
 TEST_F(ComparisonTest, WorseMetricIsARegressionAndBetterOneAnImprovement) {
   add("base", good_record());
   RunRecord record = good_record();
@@ -270,10 +367,9 @@ TEST_F(ComparisonTest, DivergencesAreNamedTheEarliestFirst) {
   EXPECT_EQ(comparison.identical(), 1U);
   const auto diverging = comparison.diverging();
   ASSERT_EQ(diverging.size(), 2U);
-  EXPECT_EQ(diverging[0]->divergence->text(),
-            "trajectory differs from frame 12 on (stamp 12.000000000): moved by 1 mm");
+  EXPECT_EQ(diverging[0]->divergence->text(), "differs from frame 12 on (stamp 12.000000000): moved by 1 mm");
   EXPECT_EQ(diverging[1]->divergence->text(),
-            "trajectory differs from frame 105 on (stamp 5.000000000): moved by 0.2 mm");
+            "differs from frame 105 on (stamp 5.000000000): moved by 0.2 mm");
   Gates gates;
   gates.divergence_fails = true;
   EXPECT_EQ(compare(gates).failures(), 2U);
@@ -286,7 +382,7 @@ TEST_F(ComparisonTest, AFrameTrackedOnOneSideIsADivergence) {
   tum.erase(row, tum.find('\n', row) + 1 - row);
   add("new", good_record(), tum);
   EXPECT_EQ(compare().runs[0].divergence->text(),
-            "trajectory differs from frame 7 on (stamp 7.000000000): only BASE tracked it");
+            "differs from frame 7 on (stamp 7.000000000): only BASE tracked it");
 }
 
 TEST_F(ComparisonTest, ADamagedTrajectoryIsARegression) {

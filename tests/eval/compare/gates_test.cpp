@@ -35,6 +35,7 @@ TEST(GatesTest, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(shipped->changed_defaults_fail, defaults.changed_defaults_fail);
   EXPECT_EQ(shipped->changed_simulation_fails, defaults.changed_simulation_fails);
   EXPECT_EQ(shipped->divergence_fails, defaults.divergence_fails);
+  EXPECT_EQ(shipped->repetitions_fail, defaults.repetitions_fail);
   EXPECT_EQ(shipped->alpha, defaults.alpha);
   EXPECT_EQ(shipped->min_repetitions, defaults.min_repetitions);
   EXPECT_EQ(shipped->factors, defaults.factors);

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
+#include "eval/external/program_files.hpp"
 #include "eval/process/program_run.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -58,6 +62,43 @@ TEST_F(ExternalProgramFile, ChangesItsIdentityWithItsFilesAndItsVersion) {
   EXPECT_NE(second->identity, first->identity);
   write("run.sh", "false\n");
   EXPECT_NE(read(named)->identity, second->identity);
+}
+
+TEST_F(ExternalProgramFile, ChangesItsIdentityWithEveryFileThatItsCommandNames) {
+  const std::string model = write("data/model.bin", "one").string();
+  const std::string vocabulary = write("data/vocabulary.txt", "one").string();
+  const std::string engine = write("bin/mine-engine", "#!/bin/sh\ntrue\n").string();
+  std::filesystem::permissions(engine, std::filesystem::perms::owner_all);
+  write("run.sh", "#!/bin/sh\nexec mine-engine \"$1\"\n");
+  setenv("MINE_VOCABULARY", vocabulary.c_str(), 1);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (path + ":" + (folder_ / "bin").string()).c_str(), 1);
+  const std::string definitions[] = {
+      "command = [\"sh\", \"-c\", \"exec mine-engine \\\"$MINE_VOCABULARY\\\" --model=" + model + "\"]",
+      "command = [\"sh\", \"{folder}/run.sh\", \"--model=" + model + "\", \"$MINE_VOCABULARY\"]"};
+  for (const std::string& command : definitions) {
+    const std::string text = "name = \"mine\"\n" + command + "\n[trajectory]\nfile = \"p\"\n";
+    const auto first = read(text);
+    ASSERT_TRUE(first.has_value()) << first.error().message;
+    for (const char* const file : {"data/model.bin", "data/vocabulary.txt", "bin/mine-engine"}) {
+      const std::string before = read(text)->identity;
+      write(file, testing::read_bytes(folder_ / file) + "\n# changed");
+      EXPECT_NE(read(text)->identity, before) << command << " " << file;
+    }
+    EXPECT_EQ(read(text)->identity, read(text)->identity);
+  }
+  setenv("PATH", path.c_str(), 1);
+  unsetenv("MINE_VOCABULARY");
+}
+
+TEST(FilesOfCommand, AreThoseThatAreNamedAndNotTheSystems) {
+  const testing::TemporaryFolder folder;
+  const auto script = folder.write("run.py", "#!/usr/bin/env python3\nimport os\n");
+  const auto files =
+      files_of_command({"sh", "{folder}/run.py", "{recording}", "{output}/run.py", "ls"}, folder.path());
+  ASSERT_EQ(files.size(), 2U) << "the script, the program itself and no other one of the system";
+  EXPECT_EQ(files[0], script);
+  EXPECT_EQ(files[1].filename(), "sh");
 }
 
 TEST_F(ExternalProgramFile, SaysWhatIsNotInstalled) {
