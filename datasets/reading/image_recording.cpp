@@ -11,6 +11,7 @@
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/depth_registration.hpp"
 #include "datasets/calibration/scaled_camera.hpp"
+#include "datasets/recording/calibration_checks.hpp"
 
 namespace fusebench::reading {
 
@@ -235,6 +236,7 @@ Result<void> attach_images(recording::Recording& recording, const calibration::R
   if (auto calibrated = calibrate_imu(recording, calibration.imu); !calibrated) return calibrated;
   recording.calibration = calibration;
   recording.calibration->color = *camera;
+  if (auto sane = recording::check_calibration(*recording.calibration, recording); !sane) return sane;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
   io::Fingerprint fingerprint;
