@@ -278,6 +278,14 @@ Result<ImageSize> read_image_size(const std::filesystem::path& file) {
   return ImageSize{opened->header.width_px, opened->header.height_px};
 }
 
+std::optional<ImageSize> png_size(std::string_view bytes) {
+  const std::optional<ClaimedSize> claim = png_claim(bytes);
+  if (!claim) return std::nullopt;
+  const std::uint64_t pixels = std::uint64_t{claim->width_px} * claim->height_px;
+  if (pixels == 0 || pixels > kMostPixels) return std::nullopt;
+  return ImageSize{static_cast<int>(claim->width_px), static_cast<int>(claim->height_px)};
+}
+
 Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected,
                               const std::optional<io::ContentHash>& opened) {
   return plain_or_any<Rgb>(decode_plain_png_color, file, color_pixels, expected, opened);

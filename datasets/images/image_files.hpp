@@ -25,6 +25,9 @@ struct ImageSize {
 /// Size as the header says. Errors as below.
 [[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
 
+/// The size that a PNG claims, whatever its pixels are; nothing for other bytes, or a size that no image has.
+[[nodiscard]] std::optional<ImageSize> png_size(std::string_view bytes);
+
 /// Reads a colour or grey image with 8 or 16 bits a channel. Grey gives three equal channels; alpha is left
 /// out, and the colour of transparent pixels is as stored. 16 bits become 8: round(255 value / 65535).
 /// expected: the size that it must have; opened: the bytes that the file must have, those which it had when

@@ -103,16 +103,17 @@ void check_depth_values(Inspection& out) {
   // A room is a few metres deep, and sensors for rooms measure from about 0.3 m to 10 m.
   const bool far = depth.median_m > 4.5 || depth.beyond_10m_share > 0.05;
   const bool near = depth.median_m < 0.45 || depth.below_quarter_metre_share > 0.1;
-  const bool sure = depth.median_m > 6 || depth.beyond_10m_share > 0.2 || depth.median_m < 0.3 ||
-                    depth.below_quarter_metre_share > 0.25;
+  // A close-up is near, too: only what no sensor measures is an error without ground truth.
+  const bool sure = depth.median_m > 6 || depth.beyond_10m_share > 0.2 || (near && depth.median_m < 0.1);
   if (far || near) {
-    out.add("depth-range", sure ? Severity::error : Severity::warning,
-            fmt::format("the median depth is {:.3g} m, {:.0f} % of it beyond 10 m and {:.0f} % below 0.25 m: "
-                        "the value of "
-                        "a metre is probably {} than assumed",
-                        depth.median_m, 100 * depth.beyond_10m_share, 100 * depth.below_quarter_metre_share,
-                        far ? "larger (5000 rather than 1000?)" : "smaller (1000 rather than 5000?)"),
-            "set units_per_metre in [depth] of calibration.toml");
+    out.add(
+        "depth-range", sure ? Severity::error : Severity::warning,
+        fmt::format("the median depth is {:.3g} m, {:.0f} % of it beyond 10 m and {:.0f} % below 0.25 m: {} "
+                    "than assumed",
+                    depth.median_m, 100 * depth.beyond_10m_share, 100 * depth.below_quarter_metre_share,
+                    far ? "the value of a metre is probably larger (5000 rather than 1000?)"
+                        : "a close-up, or the value of a metre is smaller (1000 rather than 5000?)"),
+        "set units_per_metre in [depth] of calibration.toml");
   }
 }
 

@@ -262,6 +262,25 @@ double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m
   return measures::median(std::move(motion_rad));
 }
 
+/// Depth out of the range of rooms is no finding where the ground truth explains the images with it, and
+/// clearly worse with depth that is four times smaller or larger. Pure rotations do not depend on depth.
+void drop_confirmed_depth_range(const WarpTest& test, const ReprojectionMeasurement& measured,
+                                Inspection& out) {
+  constexpr double kOther = 4;
+  constexpr double kClearlyWorse = 1 / kClearFactor;
+  constexpr double kSameScale = 0.1;
+  if (!out.has("depth-range") || out.has("depth-scale")) return;
+  const auto fitted = std::ranges::find(measured.hypotheses, "depth-scale", &HypothesisResult::code);
+  if (fitted == measured.hypotheses.end() || std::abs(std::log(fitted->value)) > kSameScale) return;
+  const auto residuals = test.residuals({});
+  for (const double scale : {kOther, 1 / kOther}) {
+    measures::Reading reading;
+    reading.depth_scale = scale;
+    if (test.compare(residuals, reading).factor < kClearlyWorse) return;
+  }
+  std::erase_if(out.findings, [](const Finding& finding) { return finding.code == "depth-range"; });
+}
+
 void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& out) {
   if (inconsistency_is_explained(out) || !times_are_plausible(out)) return;
   if (measured.static_factor > kStaticFactor) return;
@@ -309,6 +328,7 @@ void check_reprojection(const recording::Recording& recording, const Workers& wo
             "with --frames A:B choose a part in which it moves");
   } else {
     search_misreadings(recording, test, measured, out);
+    drop_confirmed_depth_range(test, measured, out);
     report_inconsistency(measured, out);
   }
   out.reprojection = std::move(measured);

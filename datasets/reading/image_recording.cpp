@@ -10,6 +10,8 @@
 
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/depth_registration.hpp"
+#include "datasets/calibration/scaled_camera.hpp"
+#include "datasets/recording/calibration_checks.hpp"
 
 namespace fusebench::reading {
 
@@ -68,6 +70,24 @@ Result<calibration::CalibratedCamera> camera_of_images(calibration::CalibratedCa
         "give the intrinsics of these images: --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]");
   }
   return camera;
+}
+
+/// Refused once, and not in every frame.
+Result<void> check_depth_size(const recording::Recording& recording,
+                              const calibration::RigCalibration& calibration, const PinholeCamera& color,
+                              const ImageSource& images) {
+  const auto size = images.depth_size();
+  const PinholeCamera& camera = calibration.depth ? calibration.depth->pinhole : color;
+  if (!size || *size == images::ImageSize{camera.width_px, camera.height_px}) return {};
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("{}: depth of {}x{} pixels, but {} has {}x{}", recording.name, size->width_px,
+                  size->height_px,
+                  calibration.depth ? "the depth camera of the calibration"
+                                    : "colour, to which depth without a camera of its own is registered,",
+                  camera.width_px, camera.height_px),
+      "give depth a camera of its own in [depth] of a calibration.toml: width_px, height_px, fx_px, "
+      "fy_px, cx_px, cy_px and T_color_depth");
 }
 
 std::string text_of(const Vector3d& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
@@ -210,11 +230,13 @@ Result<void> attach_images(recording::Recording& recording, const calibration::R
   const auto camera = camera_of_images(calibration.color, source,
                                        first_image.empty() ? recording.name : first_image.string());
   if (!camera) return tl::unexpected(camera.error());
+  if (auto fits = check_depth_size(recording, calibration, camera->pinhole, source); !fits) return fits;
   const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
   for (recording::FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
   if (auto calibrated = calibrate_imu(recording, calibration.imu); !calibrated) return calibrated;
   recording.calibration = calibration;
   recording.calibration->color = *camera;
+  if (auto sane = recording::check_calibration(*recording.calibration, recording); !sane) return sane;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
   io::Fingerprint fingerprint;
@@ -231,6 +253,18 @@ Result<void> attach_images(recording::Recording& recording, const calibration::R
                   std::move(registration), source});
   recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
   return {};
+}
+
+void complete_depth_camera(calibration::RigCalibration& calibration, const images::ImageSize& color,
+                           const images::ImageSize& depth) {
+  if (calibration.depth || color == depth) return;
+  PinholeCamera view = calibration.color.pinhole;
+  if (view.width_px == 0) {
+    view.width_px = color.width_px;
+    view.height_px = color.height_px;
+  }
+  calibration.depth =
+      calibration::DepthCamera{calibration::scaled_camera(view, depth.width_px, depth.height_px), SE3{}};
 }
 
 double settled_depth_units(calibration::RigCalibration& calibration, double published_units_per_metre) {

@@ -24,11 +24,16 @@ struct ImageDecoding {
 [[nodiscard]] double settled_depth_units(calibration::RigCalibration& calibration,
                                          double published_units_per_metre);
 
-/// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
-/// image against the calibration, sets rig (camera, timing, IMU), applies the delay of depth and the offset
-/// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame,
-/// which refuses an image whose bytes are no longer those of the fingerprint. Errors: data_missing,
-/// data_corrupt.
+/// Where depth shows colour's view in another number of pixels (an iPhone's): its camera is that of colour,
+/// scaled, unless the calibration has one.
+void complete_depth_camera(calibration::RigCalibration& calibration, const images::ImageSize& color,
+                           const images::ImageSize& depth);
+
+/// Completes a recording whose frames, truth and inertial samples are in place: checks the sizes of the first
+/// images and the values of the calibration (calibration_checks.hpp), sets rig (camera, timing, IMU), applies
+/// the delay of depth and the offset of the IMU's clock, takes the fingerprint (every used image is read
+/// once), and provides load_frame, which refuses an image whose bytes are no longer those of the fingerprint.
+/// Errors: data_missing, data_corrupt.
 [[nodiscard]] Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding);
 
 /// The same for images that come from `source`; calibration and identity as above.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "datasets/images/file_content.hpp"
@@ -71,6 +72,9 @@ ImageSource image_files(std::vector<recording::FrameEntry> frames, DepthReader r
   const auto listed = std::make_shared<const std::vector<recording::FrameEntry>>(std::move(frames));
   ImageSource source;
   source.color_size = [listed] { return images::read_image_size(listed->front().color_file); };
+  source.depth_size = [listed] {
+    return images::png_size(images::content_of(listed->front().depth_file).text());
+  };
   source.add_to = [listed](std::size_t frame, io::Fingerprint& fingerprint) -> Result<ImageHashes> {
     const auto color = add_image((*listed)[frame].color_file, fingerprint);
     if (!color) return tl::unexpected(color.error());
@@ -97,6 +101,10 @@ ImageSource stored_images(StoredImages images) {
     return stored->color(0).and_then(stored->decode_color).map([](const ColorImage& image) {
       return images::ImageSize{image.width, image.height};
     });
+  };
+  source.depth_size = [stored]() -> std::optional<images::ImageSize> {
+    const auto depth = stored->depth(0);
+    return depth ? images::png_size(depth->bytes) : std::nullopt;
   };
   source.add_to = [stored](std::size_t frame, io::Fingerprint& fingerprint) -> Result<ImageHashes> {
     const auto color = stored->color(frame);

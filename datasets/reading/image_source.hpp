@@ -38,6 +38,8 @@ struct ImageHashes {
 struct ImageSource {
   /// Of the first colour image.
   std::function<Result<images::ImageSize>()> color_size;
+  /// Of the first depth image, as the header of a PNG says; nothing for others.
+  std::function<std::optional<images::ImageSize>()> depth_size;
   /// Adds the stored bytes of both images.
   std::function<Result<ImageHashes>(std::size_t frame, io::Fingerprint& fingerprint)> add_to;
   /// Colour as images::read_color(), depth as DepthReader.

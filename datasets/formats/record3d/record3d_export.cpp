@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/io/input_file.hpp"
-#include "datasets/calibration/scaled_camera.hpp"
 #include "datasets/formats/record3d/record3d_metadata.hpp"
 #include "datasets/images/image_files.hpp"
 #include "datasets/reading/image_recording.hpp"
@@ -43,19 +42,23 @@ Result<std::vector<reading::NumberedFrame>> list_frames(const fs::path& folder,
   return reading::pair_numbered(*color, *depth, "rgb/<k>.jpg (or .png) and depth/<k>.exr", recording);
 }
 
-Result<calibration::RigCalibration> calibration_of(const Record3dMetadata& metadata,
-                                                   const fs::path& first_depth) {
-  const auto depth = images::read_float(first_depth);
-  if (!depth) return tl::unexpected(depth.error());
+calibration::RigCalibration calibration_of(const Record3dMetadata& metadata) {
   calibration::RigCalibration calibration;
   calibration.color.pinhole = metadata.camera;
   calibration.color.timing = calibration::kUnknownTiming;
-  if (depth->width != metadata.camera.width_px || depth->height != metadata.camera.height_px) {
-    calibration.depth = calibration::DepthCamera{
-        calibration::scaled_camera(metadata.camera, depth->width, depth->height), SE3{}};
-  }
   calibration.source = "metadata.json of the recording";
   return calibration;
+}
+
+/// Depth shows colour's view.
+Result<void> add_depth_camera(const std::vector<reading::NumberedFrame>& frames,
+                              calibration::RigCalibration& calibration) {
+  const auto color = images::read_image_size(frames.front().color_file);
+  if (!color) return tl::unexpected(color.error());
+  const auto depth = images::read_float(frames.front().depth_file);
+  if (!depth) return tl::unexpected(depth.error());
+  reading::complete_depth_camera(calibration, *color, {depth->width, depth->height});
+  return {};
 }
 
 /// Lists of metadata.json are by the number of the frame.
@@ -114,9 +117,12 @@ Result<recording::Recording> open_record3d(const fs::path& folder, const recordi
   if (!metadata) return tl::unexpected(metadata.error());
   const auto frames = list_frames(place, recording);
   if (!frames) return tl::unexpected(frames.error());
-  const auto calibration = recording::choose_calibration(
-      folder, options, [&] { return calibration_of(*metadata, frames->front().depth_file); }, recording);
+  auto calibration = recording::choose_calibration(
+      folder, options, [&] { return Result<calibration::RigCalibration>(calibration_of(*metadata)); },
+      recording);
   if (!calibration) return tl::unexpected(calibration.error());
+  if (const auto added = add_depth_camera(*frames, *calibration); !added)
+    return tl::unexpected(added.error());
   if (const auto added = add_frames(*frames, *metadata, place / "metadata.json", options, recording); !added)
     return tl::unexpected(added.error());
   if (recording.ground_truth.empty()) {

@@ -36,7 +36,17 @@ Result<void> check_ranges(const std::string& source, const ImuTopic& imu) {
   return {};
 }
 
-/// Samples whose stamp is new, and, if only_new, whose value is new and not zero.
+/// In the order of time; of equal stamps the first.
+template <class Sample>
+void sort_by_time(std::vector<Sample>& samples) {
+  std::ranges::stable_sort(samples, {}, &Sample::timestamp_ns);
+  const auto repeated = std::ranges::unique(samples, {}, &Sample::timestamp_ns);
+  samples.erase(repeated.begin(), repeated.end());
+}
+
+/// Samples in the order of time. only_new: those whose value is new and not zero in the order of arrival, in
+/// which a copy follows its original; a sensor that lags has copies of the other one with stamps before their
+/// original's.
 template <class Sample>
 std::vector<Sample> samples_of(const ImuTopic& imu, Vector3d ImuMessage::*value, bool only_new) {
   std::vector<Sample> samples;
@@ -44,10 +54,10 @@ std::vector<Sample> samples_of(const ImuTopic& imu, Vector3d ImuMessage::*value,
   for (const ImuMessage& message : imu.samples) {
     const Vector3d& now = message.*value;
     if (only_new && (now == last || now.isZero(0))) continue;
-    if (!samples.empty() && message.header.timestamp_ns <= samples.back().timestamp_ns) continue;
     last = now;
     samples.push_back({message.header.timestamp_ns, now});
   }
+  sort_by_time(samples);
   return samples;
 }
 
@@ -85,10 +95,10 @@ Result<void> take_united(const Source& source, const ImuTopic& imu, recording::R
       repeats_of(imu, &ImuMessage::specific_force_mps2) > many)
     return join(source, imu, imu, true, recording);
   for (const ImuMessage& sample : imu.samples) {
-    const std::int64_t time_ns = sample.header.timestamp_ns;
-    if (!recording.imu.empty() && time_ns <= recording.imu.back().timestamp_ns) continue;
-    recording.imu.push_back({time_ns, sample.angular_velocity_radps, sample.specific_force_mps2});
+    recording.imu.push_back(
+        {sample.header.timestamp_ns, sample.angular_velocity_radps, sample.specific_force_mps2});
   }
+  sort_by_time(recording.imu);
   recording.imu_source = recording::ImuSource::recorded;
   return {};
 }

@@ -151,12 +151,7 @@ Result<BagTopics> read_topics(const std::filesystem::path& file) {
   BagTopics& topics = collector.topics;
   topics.ends_early = content->ends_early;
   for (auto& [topic, images] : topics.images) sort_images(images);
-  for (auto& [topic, imu] : topics.imus) {
-    std::ranges::stable_sort(imu.samples, [](const ImuMessage& a, const ImuMessage& b) {
-      return a.header.timestamp_ns < b.header.timestamp_ns;
-    });
-    imu.frame_id = imu.samples.front().header.frame_id;
-  }
+  for (auto& [topic, imu] : topics.imus) imu.frame_id = imu.samples.front().header.frame_id;
   return std::move(topics);
 }
 

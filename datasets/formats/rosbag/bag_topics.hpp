@@ -32,7 +32,7 @@ struct ImageTopic {
 
 struct ImuTopic {
   std::string frame_id;
-  std::vector<ImuMessage> samples;  ///< in the order of time; stamps may repeat
+  std::vector<ImuMessage> samples;  ///< in the order of arrival; stamps may repeat and run backwards
 };
 
 /// By topic.

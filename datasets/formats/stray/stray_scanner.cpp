@@ -115,10 +115,6 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   calibration::RigCalibration calibration;
   calibration.color.pinhole = calibration::scaled_camera(*camera, size.width_px, size.height_px);
   calibration.color.timing = calibration::kUnknownTiming;
-  if (images.depth_size != size) {
-    calibration.depth = calibration::DepthCamera{
-        calibration::scaled_camera(*camera, images.depth_size.width_px, images.depth_size.height_px), SE3{}};
-  }
   calibration.source = file.filename().string() + " of the recording, scaled to the images";
   return calibration;
 }
@@ -215,6 +211,7 @@ Result<recording::Recording> open_stray(const fs::path& folder, const recording:
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return published_calibration(folder, of_frames, *images); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
+  reading::complete_depth_camera(*calibration, images->color_size, images->depth_size);
   if (const auto added = add_frames(*odometry, *images, recording); !added)
     return tl::unexpected(added.error());
   if (io::is_named(folder / "imu.csv")) {

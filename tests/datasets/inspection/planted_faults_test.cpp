@@ -155,6 +155,24 @@ TEST(PlantedFaults, DepthScaleFiveThousandForOneThousand) {
   EXPECT_THAT(faults(inspected(clean_recording({.depth_factor = 0.2}))), Contains("depth-scale"));
 }
 
+/// A tenth of the room and of the motion: the same images, with depth of about 0.2 m.
+TEST(PlantedFaults, ACloseUpWhoseScaleFitsTheTruthIsNoFault) {
+  Recording recording = clean_recording({.imu = false, .depth_factor = 0.1});
+  for (StampedPose& pose : recording.ground_truth) pose.T_world_camera.translation *= 0.1;
+  const Inspection result = inspected(recording);
+  EXPECT_LT(result.depth.median_m, 0.3);
+  EXPECT_THAT(faults(result), Not(Contains("depth-range")));
+  EXPECT_THAT(faults(result), Not(Contains("depth-scale")));
+}
+
+TEST(PlantedFaults, ACloseUpWithoutTruthIsNoError) {
+  const Inspection result = inspected(clean_recording({.truth = false, .imu = false, .depth_factor = 0.1}));
+  ASSERT_NE(find(result, "depth-range"), nullptr);
+  EXPECT_EQ(find(result, "depth-range")->severity, Severity::warning);
+  EXPECT_THAT(find(result, "depth-range")->message,
+              HasSubstr("a close-up, or the value of a metre is smaller"));
+}
+
 TEST(PlantedFaults, PosesThatAreNotReflected) {
   Recording recording = clean_recording({.camera = small_camera()});  // the IMU is then compared with images
   const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "datasets/formats/rosbag/bag_imu.hpp"
 #include "datasets/formats/rosbag/lz4_frame.hpp"
 #include "datasets/formats/rosbag/ros_images.hpp"
@@ -213,6 +216,54 @@ TEST_F(Rosbag, CopiedHalvesOfInertialMessagesAreLeftOut) {
     EXPECT_NEAR(recording.imu[i].specific_force_mps2.z() - recording.imu[i - 1].specific_force_mps2.z(), 0.1,
                 1e-9);
   }
+}
+
+/// As realsense-ros with unite_imu_method:=copy sends them: a message for each sample of either sensor, with
+/// its stamp and the newest value of the other.
+TEST_F(Rosbag, CopiesOfASensorThatLagsAreNoSamples) {
+  struct Arrival {
+    std::int64_t arrival_us;
+    std::int64_t stamp_us;
+    bool is_gyroscope;
+  };
+  std::vector<Arrival> arrivals;
+  for (std::int64_t i = 0; i < 200; ++i) arrivals.push_back({5000 * i, 5000 * i, true});
+  for (std::int64_t i = 0; i < 250; ++i) arrivals.push_back({4000 * i + 13'000, 4000 * i, false});
+  std::ranges::stable_sort(arrivals, {}, &Arrival::arrival_us);
+  BagTopics topics;
+  ImuTopic& imu = topics.imus["/camera/imu"];
+  double rate = 0;
+  double force = 0;
+  for (const Arrival& a : arrivals) {
+    (a.is_gyroscope ? rate : force) = 1 + 1e-6 * static_cast<double>(a.stamp_us);
+    const auto message = imu_message(ros_imu(
+        ros_header(10, static_cast<std::uint32_t>(1000 * a.stamp_us), "imu"), {rate, 0, 0}, {0, 0, force}));
+    ASSERT_TRUE(message);
+    imu.samples.push_back(*message);
+  }
+  Recording recording;
+  ASSERT_TRUE(take_imu(topics, "room.bag", recording));
+  EXPECT_TRUE(
+      any_contains(recording.notes, "250 accelerometer samples are interpolated to 200 gyroscope times"));
+  ASSERT_EQ(recording.imu.size(), 200);
+  for (std::size_t i = 0; i < 200; ++i) {
+    const double time_s = 0.005 * static_cast<double>(i);
+    EXPECT_NEAR(1e-9 * static_cast<double>(recording.imu[i].timestamp_ns) - 10, time_s, 1e-9);
+    EXPECT_NEAR(recording.imu[i].angular_velocity_radps.x(), 1 + time_s, 1e-9);
+    EXPECT_NEAR(recording.imu[i].specific_force_mps2.z(), 1 + time_s, 1e-9);
+  }
+}
+
+TEST_F(Rosbag, UnitedMessagesOutOfOrderAreSorted) {
+  BagTopics topics;
+  for (const std::uint32_t k : {0U, 2U, 1U, 3U, 3U})
+    topics.imus["/imu"].samples.push_back(
+        *imu_message(ros_imu(ros_header(10, k * 5'000'000, "imu"), {0.1 * k + 1, 0, 0}, {0, 0, 9.0 + k})));
+  Recording recording;
+  ASSERT_TRUE(take_imu(topics, "room.bag", recording));
+  ASSERT_EQ(recording.imu.size(), 4);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(recording.imu[k].specific_force_mps2.z(), 9.0 + static_cast<double>(k));
 }
 
 TEST_F(Rosbag, EncodingsOfImages) {

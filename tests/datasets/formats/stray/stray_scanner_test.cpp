@@ -102,6 +102,36 @@ TEST_F(StrayScanner, AccelerationsOfBothVersionsBecomeSpecificForce) {
   EXPECT_TRUE(any_contains(without->warnings, "neither the length of gravity in g nor in m/s^2"));
 }
 
+TEST_F(StrayScanner, ACalibrationWithoutADepthCameraGetsThatOfColourScaled) {
+  write("calibration.toml",
+        "[color]\nfx_px = 26\nfy_px = 28\ncx_px = 15.5\ncy_px = 11.5\n[imu]\n"
+        "T_imu_color = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]\ngyroscope_noise_radps_sqrthz = 1e-3\n"
+        "accelerometer_noise_mps2_sqrthz = 1e-2\ngyroscope_bias_walk_radps2_sqrthz = 1e-5\n"
+        "accelerometer_bias_walk_mps3_sqrthz = 1e-4\n");
+  write_imu(1);
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->imu.size(), 30);
+  ASSERT_TRUE(recording->calibration->depth);
+  EXPECT_EQ(recording->calibration->depth->pinhole.width_px, 8);
+  EXPECT_EQ(recording->calibration->depth->pinhole.fx_px, 6.5);
+  EXPECT_EQ(recording->calibration->depth->pinhole.fy_px, 7);
+  const auto frame = recording->load_frame(0);
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_EQ(frame->depth_m(16, 12), 2);
+}
+
+TEST_F(StrayScanner, DepthOfAnotherSizeThanItsCameraIsRefusedOnce) {
+  std::string calibration(kImuCalibration);
+  const std::string_view size = "width_px = 8\nheight_px = 6";
+  write("calibration.toml",
+        calibration.replace(calibration.find(size), size.size(), "width_px = 4\nheight_px = 3"));
+  const Error error = refusal();
+  EXPECT_EQ(error.code, ErrorCode::data_corrupt);
+  expect_contains(error.message, "depth of 8x6 pixels, but the depth camera of the calibration has 4x3");
+  expect_contains(error.hint, "[depth] of a calibration.toml");
+}
+
 TEST_F(StrayScanner, AVideoIsNotDecodedAndTheCommandIsSaid) {
   std::filesystem::remove_all(folder_ / "rgb");
   const Error error = refusal();

@@ -233,6 +233,15 @@ TEST(TumRgbd, UnmatchedImagesAreCounted) {
   expect_contains(recording->warnings[0], "1 of 3 colour and 1 of 3 depth images");
 }
 
+TEST(TumRgbd, DepthOfAnotherSizeThanColourIsRefusedOnce) {
+  const TumFolder folder;
+  folder.write_depth(0, Image<std::uint16_t>(4, 3, 5000));
+  const std::string message = refusal(folder, ErrorCode::data_corrupt);
+  expect_contains(message,
+                  "depth of 4x3 pixels, but colour, to which depth without a camera of its own is "
+                  "registered, has 8x6");
+}
+
 TEST(TumRgbd, MissingLists) {
   const TumFolder folder;
   std::filesystem::remove(folder.path() / "depth.txt");
