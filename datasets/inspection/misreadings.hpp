@@ -2,7 +2,10 @@
 // warps.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +33,18 @@ class WarpTest {
       const measures::Reading& reading) const;
   [[nodiscard]] Comparison compare(const std::vector<std::optional<measures::WarpResidual>>& base,
                                    const measures::Reading& reading) const;
+  /// The same, of every third pair if the reading does not lower their residuals: most readings are wrong.
+  [[nodiscard]] Comparison screen(const std::vector<std::optional<measures::WarpResidual>>& base,
+                                  const measures::Reading& reading) const;
 
  private:
+  [[nodiscard]] Comparison compare_every(std::size_t step,
+                                         const std::vector<std::optional<measures::WarpResidual>>& base,
+                                         const measures::Reading& reading) const;
+  [[nodiscard]] std::optional<double> ratio_of(const measures::WarpPair& pair,
+                                               const measures::WarpResidual& base,
+                                               const measures::Reading& reading) const;
+
   const recording::Recording& recording_;
   std::vector<measures::WarpPair> pairs_;
   std::int64_t gap_ns_;

@@ -85,7 +85,7 @@ std::vector<Improvement> try_misreadings(const recording::Recording& recording, 
   for (const Misreading& misreading : misreadings(recording.rig.camera)) {
     measures::Reading reading = base;
     misreading.apply(reading);
-    const Comparison c = test.compare(residuals, reading);
+    const Comparison c = test.screen(residuals, reading);
     Improvement tried{{misreading.code, misreading.name, 0, c.factor, c.wins},
                       c,
                       std::move(reading),

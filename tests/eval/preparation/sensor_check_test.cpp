@@ -69,5 +69,25 @@ TEST(SensorCheck, OnlyErrorsOfUnitsGravityAxesAndRecordingInvalidateResults) {
   EXPECT_FALSE(makes_results_invalid({"accelerometer-unit", Severity::warning, "", ""}));
 }
 
+TEST(SensorCheck, ARefusalHasAllReasonsAndRemedies) {
+  SensorCheck check;
+  check.findings = {
+      {"accelerometer-unit", Severity::error, "the values are in g", "multiply them by 9.80665"},
+      {"imu-time-offset", Severity::error, "late", "add 0.02"},
+      {"accelerometer-sign", Severity::error, "its sign is wrong", "negate the values"}};
+  const auto refused = refusal(check, "desk");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->code, ErrorCode::data_corrupt);
+  EXPECT_EQ(refused->message, "the IMU of 'desk': the values are in g; its sign is wrong");
+  EXPECT_EQ(refused->hint, "multiply them by 9.80665; negate the values; --prepare off runs all the same");
+  check.findings = {{"imu-time-offset", Severity::error, "late", "add 0.02"}};
+  EXPECT_FALSE(refusal(check, "desk"));
+}
+
+TEST(SensorCheck, AxesOfOneSensorInvalidateResults) {
+  EXPECT_TRUE(makes_results_invalid({"gyroscope-axes", Severity::error, "", ""}));
+  EXPECT_TRUE(makes_results_invalid({"accelerometer-axes", Severity::error, "", ""}));
+}
+
 }  // namespace
 }  // namespace fusebench
