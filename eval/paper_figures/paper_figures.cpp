@@ -154,7 +154,8 @@ Result<void> add_patches(const Loaded& recording, const std::filesystem::path& f
   const std::string text = pictures.text.empty()
                                ? "Nothing to show: there is no frame of which both methods keep the patches."
                                : pictures.text;
-  written.page.sections.push_back({"Patches " + recording.label, text, figure.images, 2, figure.columns});
+  written.page.sections.push_back(
+      {"Patches " + recording.label, text, figure.images, 2, false, figure.columns});
   return draw(figure, folder, format);
 }
 
@@ -218,7 +219,7 @@ Result<void> add_models(const Loaded& recording, const std::filesystem::path& fo
       {"Reconstructions " + recording.label,
        "Models of all methods by one camera, behind and above the first pose of each. " +
            results_of(recording.series) + " Walls that face away are left out.",
-       figure.images, 2, figure.columns});
+       figure.images, 2, false, figure.columns});
   return draw(figure, folder, format);
 }
 

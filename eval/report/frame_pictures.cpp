@@ -136,8 +136,8 @@ Result<std::vector<page::PageSection>> read_pictures(const record::RecordedRecor
   if (!read) return tl::unexpected(read.error());
   std::map<std::size_t, const ColorImage*> images;
   for (std::size_t i = 0; i < frames.size(); ++i) images[frames[i]] = &(*read)[i];
-  std::vector<page::PageSection> sections = {
-      {kTitle, "", images_of(scene, images, kPictureWidth_px), 3, std::max<std::size_t>(scene.size(), 3)}};
+  std::vector<page::PageSection> sections = {{kTitle, "", images_of(scene, images, kPictureWidth_px), 3,
+                                              false, std::max<std::size_t>(scene.size(), 3)}};
   if (!between.empty()) {
     sections.push_back({"Frames over time", "", images_of(between, images, kStripWidth_px), 3});
     sections.back().strip = true;

@@ -38,9 +38,10 @@ std::vector<std::size_t> colours_of(const std::vector<run_files::FoundRun>& runs
 /// Each recording has some twenty charts, and a sweep has charts above them: the last ones would be far
 /// below.
 bool has_many_charts(std::size_t recordings, const std::vector<std::string>& methods) {
-  constexpr std::size_t kMostRecordings = 2;
-  constexpr std::size_t kMostMethods = 6;
-  return recordings > kMostRecordings || std::set(methods.begin(), methods.end()).size() > kMostMethods;
+  constexpr std::size_t kMostOpenRecordings = 2;
+  constexpr std::size_t kMostOpenMethods = 6;
+  return recordings > kMostOpenRecordings ||
+         std::set(methods.begin(), methods.end()).size() > kMostOpenMethods;
 }
 
 }  // namespace
