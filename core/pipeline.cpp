@@ -303,8 +303,9 @@ void Pipeline::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking_;
   const filter::UndoneReadout undone = preparation_.undone_readout(now.estimate->mean);
-  const bool anew = now.reference.patches.empty() ||
-                    acceptance::needs_new_anchor(deformed_update_.measurement().outcomes(), config_.patches);
+  const bool is_first = now.reference.patches.empty();
+  const bool anew =
+      is_first || acceptance::needs_new_anchor(deformed_update_.measurement().outcomes(), config_.patches);
   if (anew) cut_patches();
   const double share =
       patches::fused_share(now.model, now.reference.patches, reference_frame(), config_.depth);
@@ -312,6 +313,9 @@ void Pipeline::refresh(health::StageTimes& stages) {
   if (anew) {
     now.reference.timestamp_ns = now.timestamp_ns;
     now.estimate = filter::cloned_as_reference(*now.estimate, undone);
+    if (config_.patches.refresh == config::Refresh::anchor && !is_first)
+      now.estimate = filter::with_anchor_noise(*std::move(now.estimate),
+                                               deformed_update_.measurement().color_information());
   }
   now.estimate =
       filter::with_reference_noise(*std::move(now.estimate), now.color_drift.noise(config_.color_drift));

@@ -126,6 +126,19 @@ GaussianState with_reference_noise(GaussianState state, const ReferenceNoise& no
   return state;
 }
 
+GaussianState with_anchor_noise(GaussianState state, const Matrix6d& information) {
+  constexpr double kWidest_rad = 0.01;
+  constexpr double kWidest_m = 0.1;
+  Vector6d limits;
+  limits << Vector3d::Constant(1 / (kWidest_rad * kWidest_rad)),
+      Vector3d::Constant(1 / (kWidest_m * kWidest_m));
+  const Matrix6d limited = information + Matrix6d(limits.asDiagonal());
+  const Matrix6d covariance = limited.inverse();
+  state.covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose) +=
+      0.5 * (covariance + covariance.transpose());
+  return state;
+}
+
 GaussianState with_model_of(const GaussianState& state, const GaussianState& there) {
   GaussianState result = state;
   const Matrix6d carried = pose_transport(state.mean.T_world_imu_reference, there.mean.T_world_imu_reference);

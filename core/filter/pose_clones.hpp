@@ -61,6 +61,11 @@ struct UndoneReadout {
 /// The error that colour adds to the reference pose in a frame (color_drift.hpp).
 [[nodiscard]] GaussianState with_reference_noise(GaussianState state, const ReferenceNoise& noise);
 
+/// The error that the noise of an anchor's own image adds to the reference pose by colour: covariance
+/// (information + W)^-1, where `information` (6x6, tangent of the pose) is that of one frame against an
+/// anchor, and W limits what colour does not observe to 0.01 rad and 0.1 m (sigmas).
+[[nodiscard]] GaussianState with_anchor_noise(GaussianState state, const Matrix6d& information);
+
 /// The state with the errors of another model in place of those of its own: of `there`, at the reference pose
 /// of that state.
 [[nodiscard]] GaussianState with_model_of(const GaussianState& state, const GaussianState& there);

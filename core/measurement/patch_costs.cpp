@@ -29,7 +29,7 @@ double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed)
   const PatchState& state = states_[patch];
   if (!state.counts) return 0;
   return (brightness_prior_.cost(state.brightness.trial) + photometric_cost(patch, posed)) /
-             photometric_variance_ +
+             color_variance() +
          geometric_cost(patch, posed) / geometric_variance_;
 }
 

@@ -86,14 +86,14 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   DisplacedPatches color;
   DisplacedPatches depth;
   for (std::size_t p = 0; p < states_.size(); ++p) {
-    sum.by_reference.add(states_[p].photometric, 1.0 / photometric_variance_);
+    sum.by_reference.add(states_[p].photometric, 1.0 / color_variance());
     sum.by_model.add(states_[p].geometric, 1.0 / geometric_variance_);
     const std::optional<PatchRows> rows = rows_of(p, camera);
     if (!rows) continue;
     color.add(states_[p].photometric, rows->color_weights());
     depth.add(states_[p].geometric, rows->depth_weights());
   }
-  sum.readout_by_reference = color.by_readout(color_displacement(frame_->motion), photometric_variance_);
+  sum.readout_by_reference = color.by_readout(color_displacement(frame_->motion), color_variance());
   sum.readout_by_model = depth.by_readout(depth_displacement(frame_->motion), geometric_variance_);
   return sum;
 }
@@ -120,6 +120,20 @@ std::optional<PatchRows> PatchMeasurement::rows_of(std::size_t patch,
   const double last_row = rig_.camera.height_px - 1;
   const auto share = [&](double row) { return std::clamp(row / last_row, 0.0, 1.0) - 0.5; };
   return PatchRows{share(rig_.camera.project(centre).y()), share(patches_[patch].centre_px.y())};
+}
+
+/// The variance factor of what is independent from frame to frame. A residual has the noise of two images.
+/// That of an anchor is the same in all frames that are compared with it: it is an error of the anchor's pose
+/// (filter::with_anchor_noise()), and half of the variance is left.
+double PatchMeasurement::color_variance() const {
+  const double share = config_.patches.refresh == config::Refresh::anchor ? 0.5 : 1.0;
+  return share * photometric_variance_;
+}
+
+Matrix6d PatchMeasurement::color_information() const {
+  Matrix6d sum = Matrix6d::Zero();
+  for (const PatchState& state : states_) sum += state.photometric.information;
+  return sum / color_variance();
 }
 
 double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {

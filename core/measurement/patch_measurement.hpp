@@ -61,6 +61,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   /// Ratios of the variance of what residuals of a kind say of the pose to the nominal one there
   /// (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
+  /// Of the pose against the reference frame, by the last linearise(): tangent of the pose (6x6).
+  [[nodiscard]] Matrix6d color_information() const;
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
   /// The level-0 pixels of tracked patches there, by patch.
   [[nodiscard]] TrackedPixels tracked_pixels() const;
@@ -100,6 +102,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   void sum_geometric(std::size_t patch, const PosedLevels& posed);
   [[nodiscard]] Weighting photometric_weighting() const;
   [[nodiscard]] Weighting geometric_weighting() const;
+  [[nodiscard]] double color_variance() const;
   [[nodiscard]] double measured_variance(filter::PoseQuadratic PatchState::*kind) const;
   [[nodiscard]] double common_depth_variance() const;
   [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;

@@ -49,6 +49,22 @@ GaussianState cut_and_fused(const GaussianState& state, const ModelDrift& drift,
   return cloned_as_reference(fused_into_model(state, drift, undone), undone);
 }
 
+TEST(PoseClones, AnAnchorGainsTheErrorOfItsOwnImage) {
+  // With both halves of the noise of a difference, the first frame against a new anchor is as uncertain as
+  // with the whole of it; a second one shares the anchor's half.
+  GaussianState state = known_at(kTo);
+  const Matrix6d whole = 25.0 * Matrix6d::Identity();
+  const GaussianState anchored = with_anchor_noise(state, 1e12 * 2 * whole);
+  const auto reference = anchored.covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose);
+  EXPECT_LT((2e12 * reference - whole.inverse()).norm(), 1e-6);
+  EXPECT_EQ((anchored.covariance - state.covariance).topRows<kReferencePose>().norm(), 0);
+  // Directions without information stay within 0.01 rad and 0.1 m.
+  const GaussianState blind = with_anchor_noise(state, Matrix6d::Zero());
+  const auto widest = blind.covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose);
+  EXPECT_NEAR(std::sqrt(widest(0, 0)), 0.01, 1e-12);
+  EXPECT_NEAR(std::sqrt(widest(5, 5)), 0.1, 1e-12);
+}
+
 TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
