@@ -18,7 +18,9 @@
 #include "datasets/formats/open3d/open3d_folder.hpp"
 #include "datasets/formats/open_loris/open_loris.hpp"
 #include "datasets/formats/record3d/record3d_export.hpp"
+#include "datasets/formats/replica/replica_folder.hpp"
 #include "datasets/formats/rosbag/rosbag_recording.hpp"
+#include "datasets/formats/scannet/scannet_folder.hpp"
 #include "datasets/formats/sens/sens_recording.hpp"
 #include "datasets/formats/seven_scenes/seven_scenes.hpp"
 #include "datasets/formats/stray/stray_scanner.hpp"
@@ -60,6 +62,14 @@ const std::vector<RecordingFormat>& formats() {
       {"stray", {"odometry.csv", "camera_matrix.csv"}, stray::open_stray, stray::is_stray},
       {"record3d", {"metadata.json", "rgb/", "depth/"}, record3d::open_record3d, record3d::is_record3d},
       {"open3d", {"intrinsic.json", "color/", "depth/"}, open3d::open_open3d, open3d::is_open3d},
+      {"scannet",
+       {"intrinsic/intrinsic_depth.txt", "color/", "depth/"},
+       scannet::open_scannet,
+       scannet::is_scannet},
+      {"replica",
+       {"results/frame*.jpg", "results/depth*.png", "cam_params.json"},
+       replica::open_replica,
+       replica::is_replica},
       {"rosbag", {"*.bag"}, rosbag::open_rosbag, rosbag::is_rosbag},
   };
   return kFormats;

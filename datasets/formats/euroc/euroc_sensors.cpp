@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/printable.hpp"
 #include "core/io/input_file.hpp"
 #include "datasets/reading/sensor_yaml.hpp"
 
@@ -44,6 +45,10 @@ Result<SE3> pose_in_body(const SensorYaml& yaml) {
 Result<Camera> read_camera(const std::filesystem::path& file) {
   const auto yaml = SensorYaml::read(file);
   if (!yaml) return tl::unexpected(yaml.error());
+  if (const auto model = yaml->text("camera_model"); model && *model != "pinhole")
+    return yaml->fail_at(
+        "camera_model",
+        fmt::format("camera_model {} is not supported (supported is pinhole)", printable(*model)));
   const auto T_body_camera = pose_in_body(*yaml);
   if (!T_body_camera) return tl::unexpected(T_body_camera.error());
   const auto k = yaml->numbers("intrinsics", 4);

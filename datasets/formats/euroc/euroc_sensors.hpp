@@ -16,8 +16,8 @@ struct EurocRig {
 };
 
 /// Errors, with file:line: data_missing (cam0/sensor.yaml), data_corrupt (a key that is missing or no number,
-/// a T_BS that is no rigid transform, a distortion that distortion_model.hpp does not support, depth with a
-/// distortion of its own).
+/// a T_BS that is no rigid transform, a camera model other than pinhole, a distortion that
+/// distortion_model.hpp does not support, depth with a distortion of its own).
 [[nodiscard]] Result<EurocRig> read_euroc_rig(const std::filesystem::path& mav0);
 
 }  // namespace fusebench::formats::euroc

@@ -104,6 +104,10 @@ TEST_F(EurocFolder, WhatIsWrongIsNamed) {
   replace("mav0/cam0/sensor.yaml", "intrinsics: [-525.0, ", "intrinsics: [525.0, 1, ");
   expect_contains(refusal(), "cam0/sensor.yaml:15: intrinsics must be a list of 4 finite numbers");
   replace("mav0/cam0/sensor.yaml", "intrinsics: [525.0, 1, ", "intrinsics: [525.0, ");
+  replace("mav0/cam0/sensor.yaml", "camera_model: pinhole", "camera_model: omni");
+  expect_contains(refusal(),
+                  "cam0/sensor.yaml:14: camera_model omni is not supported (supported is pinhole)");
+  replace("mav0/cam0/sensor.yaml", "camera_model: omni", "camera_model: pinhole");
   replace("mav0/cam0/sensor.yaml", "radial-tangential", "equidistant");
   EXPECT_TRUE(open_recording(place_)) << "without a distortion the model does not matter";
   replace("mav0/cam0/sensor.yaml", "distortion_coefficients: [0.0,", "distortion_coefficients: [0.1,");
