@@ -47,6 +47,10 @@ std::string shown(const registry::RunMetric& metric, double value) {
 /// What a ratio is worth.
 std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& ratio) {
   if (!ratio.interval) return ". One recording each: no evidence that the order is the same on others.";
+  constexpr std::size_t kFewest = 3;  // of two, the interval spans orders of magnitude
+  if (ratio.count < kFewest)
+    return fmt::format(" over {}: too few to tell it from the differences between recordings.",
+                       counted(ratio.count, "recording"));
   const auto& [low, high] = *ratio.interval;
   std::string text =
       fmt::format(" (95 % interval {:.2f} to {:.2f} over {})", low, high, counted(ratio.count, "recording"));
@@ -202,9 +206,7 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
   }
   std::vector<std::string> sentences;
   if (bad.empty()) {
-    sentences.push_back(fmt::format("{} ended well.", table.rows.size() == 1
-                                                          ? "The run"
-                                                          : fmt::format("All {} runs", table.rows.size())));
+    sentences.push_back(table.rows.size() == 1 ? "The run ended well." : "All runs ended well.");
   } else {
     sentences.push_back(fmt::format("{} of {} did not end well: {}.", bad.size(),
                                     counted(table.rows.size(), "run"), list_of(bad, "; ")));

@@ -96,9 +96,10 @@ void truth_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
              fmt::format("depth {:.1f} mm ({:.2f} %), intensity {:.1f} grey levels (medians)",
                          1e3 * r.depth_residual_m, 100 * r.depth_residual_share, r.intensity_residual_grey));
   for (const inspection::HypothesisResult& h : r.hypotheses) {
-    const std::string value = h.value == 0                    ? ""
-                              : h.code == "truth-time-offset" ? fmt::format(", by {:+.1f} ms", 1e3 * h.value)
-                                                              : fmt::format(", factor {:.3f}", h.value);
+    const std::string value = h.value == 0 ? ""
+                              : h.code.ends_with("time-offset")
+                                  ? fmt::format(", by {:+.1f} ms", 1e3 * h.value)
+                                  : fmt::format(", factor {:.3f}", h.value);
     warped.add("hypothesis: " + h.name,
                fmt::format("{} ({:.{}f} times the residuals{})", i.has(h.code) ? "accepted" : "rejected",
                            h.factor, h.factor < 2 ? 2 : 1, value));

@@ -31,7 +31,7 @@ void rosbag(std::string_view bytes) {
   if (!topics) return check_error(topics.error(), file.path());
   for (const auto& [name, topic] : topics->images) check_images(file.path(), topic);
   for (const auto& [name, camera] : topics->cameras)
-    check(camera.pinhole.fx_px > 0 && camera.pinhole.width_px > 0, "a camera can be one");
+    check(!camera || (camera->pinhole.fx_px > 0 && camera->pinhole.width_px > 0), "a camera can be one");
   recording::Recording recording;
   if (const auto imu = take_imu(*topics, file.path(), recording); !imu) check_error(imu.error(), file.path());
   for (std::size_t i = 1; i < recording.imu.size(); ++i)

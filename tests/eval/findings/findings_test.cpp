@@ -117,6 +117,14 @@ TEST_F(FindingsTest, ADifferenceIsJudgedByItsIntervalOverRecordings) {
     add_run(name, "dm", dm_m);
   }
   testing::expect_contains(sentences_of(rankings()[0]).front(), "the interval holds 1, so it may be noise");
+
+  runs_.clear();
+  for (const char* const name : {"a", "b"}) {
+    add_run(name, "full", 0.01);
+    add_run(name, "dm", 0.012);
+  }
+  testing::expect_contains(sentences_of(rankings()[0]).front(),
+                           "1.20 times as much over 2 recordings: too few");
 }
 
 TEST_F(FindingsTest, RunsThatEndedWellSayHowMuchTheyLost) {
@@ -127,7 +135,7 @@ TEST_F(FindingsTest, RunsThatEndedWellSayHowMuchTheyLost) {
   runs_[1].record.frames = {100, 42, 58};
   const auto failures = failures_of(tables::table_of(runs_));
   ASSERT_EQ(failures.size(), 2U);
-  EXPECT_EQ(failures[0], "All 2 runs ended well.");
+  EXPECT_EQ(failures[0], "All runs ended well.");
   EXPECT_EQ(failures[1], "Frames without a pose, of which an ATE says nothing: dm on a (58 %).");
 }
 
