@@ -57,11 +57,11 @@ struct NumbersHash {
 class Grid {
  public:
   Grid(const PreciseMesh& mesh, double cell_m)
-      : mesh_(mesh), cell_m_(cell_m), cluster_of_(mesh.vertices.size(), kUnknown) {}
+      : mesh_(mesh), cell_m_(cell_m), cluster_of_(mesh.vertices.size(), kNoCluster) {}
 
   std::uint32_t cluster_of(std::size_t vertex) {
     std::uint32_t& cluster = cluster_of_[vertex];
-    if (cluster != kUnknown) return cluster;
+    if (cluster != kNoCluster) return cluster;
     const Vector3d& v = mesh_.vertices[vertex];
     const std::array<std::int64_t, 3> cell = {place(v.x()), place(v.y()), place(v.z())};
     cluster = numbers_.try_emplace(cell, static_cast<std::uint32_t>(numbers_.size())).first->second;
@@ -75,7 +75,7 @@ class Grid {
   [[nodiscard]] std::size_t clusters() const { return numbers_.size(); }
 
  private:
-  static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNoCluster = std::numeric_limits<std::uint32_t>::max();
 
   [[nodiscard]] std::int64_t place(double x) const {
     constexpr double kFarthest = 1e15;  // cells; whatever lies beyond is one
