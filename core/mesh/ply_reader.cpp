@@ -34,6 +34,7 @@ class PlyReader {
     line_ = header->end_line;
     if (!accept(*header)) return tl::unexpected(error_);
     for (const PlyElement& element : header->elements) {
+      if (element.name == "vertex") set_roles(element);
       for (std::size_t row = 0; row < element.count; ++row) {
         const bool ok = element.name == "vertex" ? read_vertex(element)
                         : element.name == "face" ? read_face(element)
@@ -86,15 +87,25 @@ class PlyReader {
     return true;
   }
 
-  bool read_vertex(const PlyElement& element) {
-    std::array<double, kVertexNames.size()> values{};
+  /// Once, and not for each vertex: names are compared slowly.
+  void set_roles(const PlyElement& element) {
+    roles_.clear();
     for (const PlyProperty& property : element.properties) {
       const auto name = std::find(kVertexNames.begin(), kVertexNames.end(), property.name);
-      if (property.count_type || name == kVertexNames.end()) {
+      roles_.push_back(property.count_type ? kVertexNames.size()
+                                           : static_cast<std::size_t>(name - kVertexNames.begin()));
+    }
+  }
+
+  bool read_vertex(const PlyElement& element) {
+    std::array<double, kVertexNames.size()> values{};
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      const std::size_t role = roles_[i];
+      if (role == kVertexNames.size()) {
         if (!skip(property)) return false;
         continue;
       }
-      const auto role = static_cast<std::size_t>(name - kVertexNames.begin());
       double& value = values[role];
       if (!read_value(property.type, property.name, value)) return false;
       if (role < 3 && !(std::abs(value) <= std::numeric_limits<float>::max()))
@@ -229,6 +240,7 @@ class PlyReader {
   bool binary_ = false;       // errors name the byte
   bool big_endian_ = false;
   std::size_t vertex_count_ = 0;
+  std::vector<std::size_t> roles_;  // of a vertex' properties in kVertexNames; its size: of no use
   bool has_normals_ = false;
   bool has_colors_ = false;
   bool has_quality_ = false;

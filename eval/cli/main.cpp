@@ -10,6 +10,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/stack_size.hpp"
 #include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/console/usage_error.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -108,24 +109,29 @@ int command_line(int given_count, const char* const* given) {
   return run_verb(verbs);
 }
 
+/// The exit code; nothing is thrown.
+int guarded_command_line(int argc, const char* const* argv) {
+  try {
+    const int code = command_line(argc, argv);
+    return console::output_arrived() ? code : exit_code(ErrorCode::io);
+  } catch (const std::bad_alloc&) {
+    const Error error{ErrorCode::run_failed, "not enough memory",
+                      "close other programs, raise the limit (ulimit -v), or give less input"};
+    console::print_error(error);
+    return exit_code(error.code);
+  } catch (const std::exception& error) {
+    console::print_error({ErrorCode::internal, error.what(), "this is a bug: please report it"});
+    return exit_code(ErrorCode::internal);
+  }
+}
+
 }  // namespace
 
 }  // namespace fusebench::cli
 
 int main(int argc, char** argv) {
-  fusebench::cli::console::prepare_standard_streams();
-  fusebench::cli::console::handle_stop_signals();
-  try {
-    const int code = fusebench::cli::command_line(argc, argv);
-    return fusebench::cli::console::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
-  } catch (const std::bad_alloc&) {
-    const fusebench::Error error{fusebench::ErrorCode::run_failed, "not enough memory",
-                                 "close other programs, raise the limit (ulimit -v), or give less input"};
-    fusebench::cli::console::print_error(error);
-    return fusebench::exit_code(error.code);
-  } catch (const std::exception& error) {
-    fusebench::cli::console::print_error(
-        {fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
-    return fusebench::exit_code(fusebench::ErrorCode::internal);
-  }
+  using namespace fusebench::cli;
+  console::prepare_standard_streams();
+  console::handle_stop_signals();
+  return console::call_with_enough_stack([&] { return guarded_command_line(argc, argv); });
 }

@@ -342,6 +342,18 @@ void add_unused_overrides(const Gates& gates, RunComparison& comparison) {
   }
 }
 
+/// Of records that were compared.
+void release_details(RunPair& pair) {
+  for (RunSide* const side : {&pair.base, &pair.fresh}) {
+    for (auto* const runs : {&side->runs, &side->replicates}) {
+      for (run_files::FoundRun& run : *runs) {
+        run.record.config = {};
+        run.record.timing.histograms = {};
+      }
+    }
+  }
+}
+
 bool knows(const std::vector<run_files::FoundRun>& runs, const std::string& key) {
   return std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
     return std::ranges::any_of(run.record.config, [&](const record::RecordedOption& option) {
@@ -407,17 +419,18 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
   return result;
 }
 
-RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
-                           const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
-                           const std::vector<run_files::FoundRun>& confirming,
+RunComparison compare_runs(std::vector<run_files::FoundRun> base, std::vector<run_files::FoundRun> fresh,
+                           const Gates& gates, const std::vector<run_files::FoundRun>& confirming,
                            const IgnoredOptions& ignored) {
   RunComparison comparison;
-  for (RunPair& pair : pair_runs(base, fresh, ignored)) {
-    comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming, ignored));
-  }
   for (const std::string& key : ignored)
     if (!knows(base, key) && !knows(fresh, key))
       comparison.notes.push_back(fmt::format("no run has an ignored option '{}'", key));
+  // Records are large, and there may be thousands: none is copied, and what no format shows is released.
+  for (RunPair& pair : pair_runs(std::move(base), std::move(fresh), ignored)) {
+    comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming, ignored));
+    release_details(comparison.runs.back().runs);
+  }
   add_unused_overrides(gates, comparison);
   return comparison;
 }

@@ -62,8 +62,8 @@ struct RunComparison {
 /// a time or a size that failed is a regression only if it fails there as well, against the same baseline. A
 /// trajectory that is damaged or cannot be read is a regression with that reason. Differences of ignored
 /// options are a note (gate "options"); a key that no run knows is a note, too.
-[[nodiscard]] RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
-                                         const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
+[[nodiscard]] RunComparison compare_runs(std::vector<run_files::FoundRun> base,
+                                         std::vector<run_files::FoundRun> fresh, const Gates& gates,
                                          const std::vector<run_files::FoundRun>& confirming = {},
                                          const IgnoredOptions& ignored = {});
 

@@ -195,16 +195,17 @@ std::string options_text(const run_files::RunIdentity& experiment) {
   return fmt::format("{}", fmt::join(options, ", "));
 }
 
-std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
-                               const std::vector<run_files::FoundRun>& fresh, const IgnoredOptions& ignored) {
+std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base, std::vector<run_files::FoundRun> fresh,
+                               const IgnoredOptions& ignored) {
   std::map<decltype(order_of(run_files::RunIdentity{})), RunPair> by_experiment;
   for (const auto& [runs, side] : {std::pair(&base, &RunPair::base), std::pair(&fresh, &RunPair::fresh)}) {
-    for (const run_files::FoundRun& run : *runs) {
+    for (run_files::FoundRun& run : *runs) {
       const run_files::RunIdentity experiment = experiment_of(run, ignored);
       RunPair& pair = by_experiment[order_of(experiment)];
       pair.experiment = experiment;
-      (pair.*side).runs.push_back(run);
+      (pair.*side).runs.push_back(std::move(run));
     }
+    runs->clear();
   }
   std::vector<RunPair> pairs;
   for (auto& [order, pair] : by_experiment) {

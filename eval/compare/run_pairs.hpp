@@ -55,8 +55,8 @@ struct RunPair {
 /// A run whose record is damaged does not know its options either: it goes to that of its folder's name
 /// first. So does a run over other images of as many or as few frames. By recording, then variant in the
 /// order of all_variants().
-[[nodiscard]] std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
-                                             const std::vector<run_files::FoundRun>& fresh,
+[[nodiscard]] std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base,
+                                             std::vector<run_files::FoundRun> fresh,
                                              const IgnoredOptions& ignored = {});
 
 }  // namespace fusebench::compare

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/nearest_name.hpp"
@@ -63,15 +64,15 @@ Result<int> compare(const CompareOptions& options) {
       options.gates.empty() ? Result<compare::Gates>(compare::Gates()) : compare::read_gates(options.gates);
   if (!gates) return tl::unexpected(gates.error());
   if (auto known = check_ignored(options.ignored); !known) return tl::unexpected(known.error());
-  const auto base = run_files::find_runs(options.base);
+  auto base = run_files::find_runs(options.base);
   if (!base) return tl::unexpected(base.error());
-  const auto fresh = run_files::find_runs(options.fresh);
+  auto fresh = run_files::find_runs(options.fresh);
   if (!fresh) return tl::unexpected(fresh.error());
   const auto confirming = options.confirm.empty() ? Result<std::vector<run_files::FoundRun>>()
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
   const compare::RunComparison comparison =
-      compare::compare_runs(*base, *fresh, *gates, *confirming, options.ignored);
+      compare::compare_runs(std::move(*base), std::move(*fresh), *gates, *confirming, options.ignored);
   // A file is no terminal, whatever standard output is.
   const std::size_t width =
       options.out.empty() ? console::table_width(options.width) : options.width.value_or(0);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/test_meshes.hpp"
 
 namespace fusebench {
@@ -51,6 +53,18 @@ TEST(MeshClustering, SurfelsStillCoverWhatTheyCovered) {
     ASSERT_TRUE(covered) << point.transpose();
   }
   for (const Eigen::Vector3f& normal : fewer.normals) EXPECT_EQ(normal, Eigen::Vector3f(0, 0, -1));
+}
+
+TEST(MeshClustering, TakesTheSmallestCellThatLeavesFewEnough) {
+  const PreciseMesh ball = testing::sphere(1, 40);
+  for (const std::size_t most : {2000U, 500U, 90U}) {
+    const PreciseMesh fewer = reduced(ball, most);
+    double cell_m = 0.005;
+    PreciseMesh expected = clustered(ball, cell_m);
+    for (; expected.triangles.size() > most; expected = clustered(ball, cell_m)) cell_m *= std::sqrt(2.0);
+    EXPECT_EQ(fewer.vertices, expected.vertices) << most;
+    EXPECT_EQ(fewer.triangles, expected.triangles) << most;
+  }
 }
 
 TEST(MeshClustering, AveragesWhatIsInACell) {
