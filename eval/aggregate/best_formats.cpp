@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "eval/aggregate/best.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -49,7 +50,7 @@ std::string headlines(const BestTable& table) {
   constexpr std::size_t kMostGroups = 8;
   if (table.groups.empty() || table.groups.size() > kMostGroups) return "";
   std::string text;
-  for (const BestGroup& group : table.groups) text += group.headline + "\n";
+  for (const BestGroup& group : table.groups) text += text::without_controls(group.headline) + "\n";
   return text + "\n";
 }
 

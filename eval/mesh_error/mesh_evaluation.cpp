@@ -110,9 +110,10 @@ Result<void> check_observed(const MeshComparison& comparison, double least) {
 SurfregScore surfreg_of(const PreciseMesh& reconstruction, const PreciseMesh& truth,
                         const SE3& T_truth_reconstruction, const Workers& workers) {
   std::vector<Vector3d> vertices_truth;
-  for (const Vector3d& vertex : surface_vertices(reconstruction))
+  vertices_truth.reserve(reconstruction.vertices.size());
+  for (const Vector3d& vertex : reconstruction.vertices)
     vertices_truth.push_back(T_truth_reconstruction * vertex);
-  return surfreg_score(vertices_truth, VertexTree(surface_vertices(truth)), workers);
+  return surfreg_score(vertices_truth, VertexTree(truth.vertices), workers);
 }
 
 }  // namespace

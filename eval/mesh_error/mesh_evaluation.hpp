@@ -30,7 +30,7 @@ struct MeshRequest {
 /// What a mesh is, in words of size.
 struct MeshShape {
   std::size_t vertices = 0;         ///< of the surface, see surface_vertices()
-  std::size_t unused_vertices = 0;  ///< that no triangle names; they are not measured
+  std::size_t unused_vertices = 0;  ///< that no triangle names; they do not count in the extent
   std::size_t triangles = 0;
   bool surfels = false;                  ///< each vertex is a disc
   Vector3d extent_m = Vector3d::Zero();  ///< of the box around its surface vertices

@@ -70,9 +70,7 @@ Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
                                                        i, largest, mesh.vertices.size()));
     }
   }
-  const std::vector<bool> used = on_surface(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (!used[i]) continue;
     if (const auto fault = trajectory::coordinate_fault("is at", mesh.vertices[i]))
       return fail(ErrorCode::data_corrupt, fmt::format("{}: vertex {} {}", what, i, *fault));
   }
@@ -89,7 +87,7 @@ std::vector<Vector3d> surface_vertices(const PreciseMesh& mesh) {
 }
 
 Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh, const MeshSampling& sampling) {
-  if (sampling.from == MeshSamples::vertices) return surface_vertices(mesh);
+  if (sampling.from == MeshSamples::vertices) return mesh.vertices;
   return mesh.radii_m.empty() ? area_samples(mesh, sampling) : area_samples(with_discs(mesh), sampling);
 }
 

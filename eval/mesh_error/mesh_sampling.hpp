@@ -25,14 +25,15 @@ struct MeshSampling {
 };
 
 /// Error data_corrupt if the mesh has neither triangles nor surfels, a triangle with a vertex that does not
-/// exist, or a surface vertex beyond trajectory::kMostPosition. `what` names the mesh.
+/// exist, or a vertex beyond trajectory::kMostPosition. `what` names the mesh.
 [[nodiscard]] Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what);
 
 /// Vertices of the surface of a mesh that check_mesh accepts: the centres of its surfels, or the vertices
 /// that its triangles name. A vertex that no triangle names belongs to no surface.
 [[nodiscard]] std::vector<Vector3d> surface_vertices(const PreciseMesh& mesh);
 
-/// Samples of a mesh that check_mesh accepts. Of vertices: surface_vertices(). Of area: one in each of
+/// Samples of a mesh that check_mesh accepts. Of vertices: all of the file, as CloudCompare and
+/// SurfReg take them. Of area: one in each of
 /// `count` parts of equal area, by the order of the triangles (of surfels: with_discs()). Error data_corrupt:
 /// a mesh without area.
 [[nodiscard]] Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh,

@@ -12,6 +12,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/run_set.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -161,7 +162,7 @@ std::string markdown(const PaperTable& table, std::size_t width) {
   std::vector<text::TableCells> lines = {heading_of(table)};
   for (const PaperRow& row : table.rows) lines.push_back(cells_of(table.of, row));
   std::string text = text::markdown_table(lines, kTextColumns, width) + "\n";
-  for (const std::string& note : table.notes) text += note + "\n";
+  for (const std::string& note : table.notes) text += text::without_controls(note) + "\n";
   return text;
 }
 

@@ -16,6 +16,7 @@
 #include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/run_set.hpp"
 #include "eval/tables/published_table.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -212,7 +213,7 @@ std::string latex(const SystemsTable& table, const LatexLayout& layout) {
 
 std::string markdown(const SystemsTable& table, std::size_t width) {
   std::string text = text::markdown_table(systems_table_cells(table), kTextColumns, width) + "\n";
-  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", text::without_controls(note));
   if (!table.notes.empty()) text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
   return text;

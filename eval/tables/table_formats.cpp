@@ -12,6 +12,7 @@
 #include "eval/record/data_labels.hpp"
 #include "eval/tables/latex_table.hpp"
 #include "eval/tables/table.hpp"
+#include "eval/text/control_characters.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -95,7 +96,7 @@ std::string count_line(const ResultTable& table) {
 std::string markdown(const ResultTable& table, std::size_t width) {
   std::string text = text::markdown_table(table_cells(table), kTextColumns, width);
   text += fmt::format("\n{}\n", count_line(table));
-  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", text::without_controls(note));
   text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
   return text;

@@ -96,7 +96,7 @@ row none 4 'none wrote no trajectory: there is no poses.txt, which trajectory.fi
 definition half half
 row half 4 'poses.txt:4'
 definition nan nan
-row nan 4 'poses.txt:3'
+row nan 0 '4/5|4 of 5'  # the row of a lost frame
 definition units units
 row units 4 'poses.txt: the poses extend over .* unit'
 definition mirror mirror

@@ -63,8 +63,11 @@ LibraryResult<OpenedImage> open_image(const std::string& file) {
 LibraryResult<OpenedImage> open_bytes(const std::string& name, std::span<const std::byte> bytes) {
   const auto memory =
       std::make_shared<OIIO::Filesystem::IOMemReader>(const_cast<std::byte*>(bytes.data()), bytes.size());
-  const OIIO::ImageSpec settings = stored_colors();
-  return opened(OIIO::ImageInput::open(name, &settings, memory.get()), memory);
+  OIIO::ImageSpec settings = stored_colors();
+  // With settings, the library takes the bytes from these alone.
+  OIIO::Filesystem::IOProxy* const source = memory.get();
+  settings.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
+  return opened(OIIO::ImageInput::open(name, &settings, source), memory);
 }
 
 LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int quality) {

@@ -64,10 +64,11 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
   for (const auto& [shape, what] : {std::pair(&evaluation.reconstruction, "the reconstruction"),
                                     std::pair(&evaluation.truth, "the truth")}) {
     if (shape->unused_vertices == 0) continue;
-    console::print_progress(fmt::format(
-        "warning: {} of {} vertices of {} belong to no triangle: they count neither in its size nor as "
-        "samples",
-        shape->unused_vertices, shape->vertices + shape->unused_vertices, what));
+    console::print_progress(
+        fmt::format("warning: {} of {} vertices of {} belong to no triangle: its size leaves them out; "
+                    "SurfReg's score and "
+                    "--samples vertices measure them",
+                    shape->unused_vertices, shape->vertices + shape->unused_vertices, what));
   }
   if (evaluation.icp && !evaluation.icp->converged) {
     console::print_progress(fmt::format(

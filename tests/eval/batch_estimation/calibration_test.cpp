@@ -187,7 +187,8 @@ TEST(Calibration, WritesAFileThatReadsBack) {
 
 TEST(Calibration, ReadOutsBelowZeroAreWrittenAsZero) {
   const testing::SimulatedRun run = testing::simulate(2);
-  const Recording recording = recording_of(run);
+  Recording recording = recording_of(run);
+  recording.calibration->color.pinhole = recording.rig.camera;
   CameraImuCalibration found;
   found.gyroscope_scale.value = found.accelerometer_scale.value = {1, 1, 1};
   found.timing = {-9.3e-5, 1.2, -0.018, 0.0002, 0.0003, 0.0004};

@@ -93,7 +93,7 @@ TEST_F(ExternalProgramFile, ChangesItsIdentityWithEveryFileThatItsCommandNames) 
 
 TEST(FilesOfCommand, AreThoseThatAreNamedAndNotTheSystems) {
   const testing::TemporaryFolder folder;
-  const auto script = folder.write("run.py", "#!/usr/bin/env python3\nimport os\n");
+  const auto script = folder.write("run.py", "#!/bin/sh\nls\n");
   const auto files =
       files_of_command({"sh", "{folder}/run.py", "{recording}", "{output}/run.py", "ls"}, folder.path());
   ASSERT_EQ(files.size(), 2U) << "the script, the program itself and no other one of the system";

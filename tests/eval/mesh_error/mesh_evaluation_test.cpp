@@ -174,7 +174,7 @@ TEST(MeshEvaluation, MeasuresSurfelsAtTheirCentres) {
   EXPECT_NEAR(result->errors.completeness.stats.mean, 0.01, 0.01) << "discs are the surface";
 }
 
-TEST(MeshEvaluation, LeavesVerticesOfNoTriangleOut) {
+TEST(MeshEvaluation, LeavesVerticesOfNoTriangleOutOfTheSize) {
   const Workers workers(1);
   MeshRequest request;
   request.errors.reconstruction = request.errors.truth = {MeshSamples::vertices, 0, 0};
@@ -187,11 +187,8 @@ TEST(MeshEvaluation, LeavesVerticesOfNoTriangleOut) {
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_EQ(result->reconstruction.unused_vertices, 2U);
   EXPECT_EQ(result->truth.unused_vertices, 1U);
-  EXPECT_EQ(result->reconstruction_samples, 121U);
-  EXPECT_EQ(result->truth_samples, 121U);
-  EXPECT_LT(result->errors.accuracy.stats.max, 1e-12);
-  EXPECT_LT(result->errors.completeness.stats.max, 1e-12);
-  EXPECT_LT(result->surfreg.vertex_mean_m, 1e-12);
+  EXPECT_EQ(result->reconstruction_samples, 123U) << "as CloudCompare takes them";
+  EXPECT_NEAR(result->errors.accuracy.stats.max, 699, 1e-9);
   EXPECT_NEAR(result->reconstruction.extent_m.norm(), std::sqrt(2.0), 1e-12);
 }
 

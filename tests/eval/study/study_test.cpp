@@ -160,6 +160,7 @@ TEST_F(StudyTest, ThePageSaysTheVerdictInItsTitleAndTheUnitsOfItsNumbers) {
   add("a", "slow", "full", 0.01);
   add("b", "slow", "full", 0.03);
   Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.split = "held-out";
   criterion.at_most = 0.02;
   const Study all = study();
   std::string page = summary_page(summarise("demo", all, std::vector{criterion}), all);
