@@ -56,6 +56,7 @@ bool is_line_of_names(std::span<const std::string_view> fields) {
 bool has_decimal_commas(std::string_view line) {
   constexpr std::string_view kSeparators = " \t\r;";
   std::size_t with_comma = 0;
+  bool is_first = true;  // a program may write the stamp with a point, by integers
   while (true) {
     const std::size_t begin = line.find_first_not_of(kSeparators);
     if (begin == std::string_view::npos) return with_comma > 0;
@@ -65,9 +66,10 @@ bool has_decimal_commas(std::string_view line) {
     if (token.find(',') != std::string_view::npos) {
       if (!is_number_with_comma(token)) return false;
       ++with_comma;
-    } else if (token.find('.') != std::string_view::npos && parse_number(token)) {
+    } else if (!is_first && token.find('.') != std::string_view::npos && parse_number(token)) {
       return false;
     }
+    is_first = false;
   }
 }
 

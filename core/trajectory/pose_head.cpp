@@ -104,6 +104,17 @@ std::optional<std::string> stamp_against(const PoseHead& head, std::size_t colum
   return std::nullopt;
 }
 
+/// A stamp with decimals, which is in seconds unless its size says that it is in `unit`: of a unit that was
+/// typed for both files.
+std::optional<std::string> decimals_against(const PoseHead& head, std::size_t column, io::TimeUnit unit) {
+  for (const HeadRow& row : head.rows) {
+    std::string stamp = stamp_in(row, column);
+    if (unit != io::TimeUnit::seconds && io::stamp_decimals(stamp) > 0 && io::unit_by_size(stamp) != unit)
+      return stamp;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<PoseHead> read_pose_head(const std::filesystem::path& file, std::vector<std::string>& warnings) {
@@ -155,8 +166,10 @@ io::TimeUnit stamp_unit_of(const PoseHead& head, const PoseColumns& columns, con
   }
   for (const std::optional<io::TimeUnit>& unit : {given.unit, given.unit ? std::nullopt : given.usual}) {
     if (!unit) continue;
-    const auto stamp = against(*unit);
+    auto stamp = against(*unit);
+    if (!stamp && given.unit && !given.of_this_file) stamp = decimals_against(head, columns.stamp, *unit);
     if (!stamp || (given.unit && given.of_this_file)) return *unit;
+    if (!given.unit) break;
     warn(first.line, fmt::format("stamps such as {} are no {}: read as {}", printable(*stamp),
                                  to_string(*unit), to_string(by_size)));
     return by_size;

@@ -74,6 +74,14 @@ Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
     if (const auto fault = trajectory::coordinate_fault("is at", mesh.vertices[i]))
       return fail(ErrorCode::data_corrupt, fmt::format("{}: vertex {} {}", what, i, *fault));
   }
+  for (std::size_t i = 0; i < mesh.radii_m.size(); ++i) {
+    const Eigen::Vector3f& n = mesh.normals[i];
+    if (!(n.norm() > 0) || !n.allFinite() || !(mesh.radii_m[i] > 0))
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: surfel {} has normal {:g} {:g} {:g} and radius {:g} m", what, i, n.x(),
+                              n.y(), n.z(), mesh.radii_m[i]),
+                  "a surfel needs a normal other than 0 and a radius above 0: remove those without");
+  }
   return {};
 }
 

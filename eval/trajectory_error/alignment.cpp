@@ -19,8 +19,8 @@ namespace {
 
 // Of the largest singular value: an absolute limit alone lets long oblique lines pass through rounding.
 constexpr double kRankTolerance = 1e-9;
-// A motion is observable if it is more than so many standard deviations of what rounding gives.
-constexpr double kSigmas = 4;
+// A motion is observable if it is more than so many times what rounding can give.
+constexpr double kRoundings = 2;
 
 std::vector<Vector3d> positions_of(std::span<const SE3> poses) {
   std::vector<Vector3d> positions;
@@ -63,7 +63,7 @@ struct Side {
   /// Whether the offsets along directions can be rounding alone.
   template <typename Directions>
   [[nodiscard]] bool is_still(const Directions& directions) const {
-    return spread(directions) <= kSigmas * std::numbers::sqrt3 * rounding;
+    return spread(directions) <= 2 * kRoundings * std::numbers::sqrt3 * rounding;
   }
 };
 
@@ -82,15 +82,11 @@ Matrix3d cross_covariance(const Side& reference, const Side& estimate) {
   return sum;
 }
 
-/// Standard deviation that rounding gives sum_i a_i b_i of coordinates with these spreads: their roundings
-/// are independent, and each is uniform within +-rounding.
+/// What rounding can give sum_i a_i b_i of coordinates with these spreads.
 double rounding_of_products(const Side& reference, double reference_spread, const Side& estimate,
                             double estimate_spread) {
-  const double reference_sigma = reference.rounding / std::numbers::sqrt3;
-  const double estimate_sigma = estimate.rounding / std::numbers::sqrt3;
-  return std::sqrt(reference.count()) *
-         (reference_sigma * estimate_spread + estimate_sigma * reference_spread +
-          reference_sigma * estimate_sigma);
+  return reference.count() * (reference.rounding * estimate_spread + estimate.rounding * reference_spread +
+                              reference.rounding * estimate.rounding);
 }
 
 tl::unexpected<Error> undetermined(const std::string& why, std::string_view remedy = "") {
@@ -156,7 +152,7 @@ Result<Similarity> align_yaw(std::span<const SE3> reference_poses, std::span<con
   // Two products for each pose, with errors of two coordinates.
   const double from_rounding = by_orientation
                                    ? kRankTolerance
-                                   : kSigmas * std::numbers::sqrt2 *
+                                   : kRoundings * std::numbers::sqrt2 *
                                          rounding_of_products(reference, reference.spread(horizontal),
                                                               estimate, estimate.spread(horizontal));
   const double least = std::max(
@@ -214,7 +210,7 @@ Result<Similarity> align_positions(std::span<const Vector3d> reference_m,
   }
   const double curvature = singular[1] + signs.z() * singular[2];
   // Written so that NaN and all-zero fail.
-  if (!(curvature > std::max(kRankTolerance * singular[0], kSigmas * from_rounding))) {
+  if (!(curvature > std::max(kRankTolerance * singular[0], kRoundings * from_rounding))) {
     return undetermined_rotation(reference, svd.matrixU().rightCols<2>(), estimate,
                                  svd.matrixV().rightCols<2>());
   }

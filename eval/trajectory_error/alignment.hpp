@@ -68,9 +68,9 @@ struct AlignmentRequest {
 ///   origin, none       need no motion (origin with scale_origin: as scale)
 ///
 /// With H = sum_i (g_i - g)(p_i - p)^T = U S V^T and d = det(U) det(V), a rotation about the worst axis has
-/// the curvature c = s_2 + d s_3. It is refused if c <= 1e-9 s_1, or if c is within four standard deviations
-/// of what the rounding of the positions (coordinate_rounding()) gives. yaw: the same of hypot(H_xx + H_yy,
-/// H_yx - H_xy).
+/// the curvature c = s_2 + d s_3. It is refused if c <= 1e-9 s_1, or if c is not more than twice what the
+/// rounding of the positions (coordinate_rounding()) can give. yaw: the same of hypot(H_xx + H_yy, H_yx -
+/// H_xy).
 [[nodiscard]] Result<Similarity> align(std::span<const SE3> reference, std::span<const SE3> estimate,
                                        const AlignmentRequest& request);
 

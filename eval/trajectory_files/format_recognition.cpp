@@ -99,7 +99,9 @@ Result<TrajectoryFormat> format_by_columns(const PoseHead& head, const std::file
     return other_tum && has_stamps(head) && !has_rotations(head, 0) ? TrajectoryFormat::tum
                                                                     : TrajectoryFormat::kitti;
   if (other_tum) return TrajectoryFormat::tum;
-  const std::string hint = columns > kTumColumns
+  const bool semicolons = head.rows.front().fields.front().find(';') != std::string::npos;
+  const std::string hint = semicolons ? "replace the semicolons between the numbers by commas or blanks"
+                           : columns > kTumColumns
                                ? "a line of names before the rows says which columns are which, for instance "
                                  "# timestamp tx ty tz qx qy qz qw; `--format` names the format"
                                : "`--format` names the format if the first row does not";

@@ -491,7 +491,8 @@ check_determinism() {
       complain "run with $threads threads"
       continue
     fi
-    [[ $(wc -l <stderr) == 1 ]] || complain "$threads threads: more than the summary on standard error"
+    # Five frames of 12 mm have no ATE.
+    [[ $(grep -cv '^no ATE: \|^  hint: ' stderr) == 1 ]] || complain "$threads threads: more than the summary on standard error"
     if [[ -z $reference ]]; then
       reference=reference
       mv "$folder" "$reference"
@@ -1077,7 +1078,7 @@ check_imports() {
     [[ -s $run/$name ]] || complain "an import does not write $name"
   done
   grep -q '4/5 frames' stderr || complain "an import does not tell its frames"
-  prints '\| freiburg1_copy +\| recorded +\| none +\| Other +\| ok +\| +- \| +- \| +0.00 \|' "an import in the table" table runs
+  prints '\| freiburg1_copy +\| recorded +\| none +\| Other +\| ok +\| +- \| +- \| +- \|' "an import in the table" table runs
   checks=$((checks + 1))
   "$binary" report runs --out report.html >stdout 2>stderr || complain "a report of an import: exit code $?"
   grep -q warning stderr && complain "a report of an import warns"

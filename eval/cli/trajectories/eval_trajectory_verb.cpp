@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -63,6 +65,33 @@ void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Trans
       {fmt::format("only {} of {} possible pairs were compared ({:.1f} %): the numbers say little "
                    "about the rest",
                    evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
+}
+
+/// Of the poses in the time of the others.
+double extent_m(const Trajectory& poses, const Trajectory& others) {
+  const auto [first, last] = std::ranges::minmax(others, {}, &StampedPose::timestamp_ns);
+  Eigen::AlignedBox3d box;
+  for (const StampedPose& pose : poses) {
+    if (pose.timestamp_ns >= first.timestamp_ns && pose.timestamp_ns <= last.timestamp_ns)
+      box.extend(pose.T_world_camera.translation);
+  }
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// evo aligns these without a word; the numbers are those of noise or of another unit.
+void warn_of_extents(const Sides& sides, const trajectory_error::TrajectoryEvaluation& evaluation,
+                     Transcript& transcript) {
+  constexpr double kMostFactor = 100;
+  const double reference_m = extent_m(sides.reference.poses, sides.estimate.poses);
+  const double estimate_m = extent_m(sides.estimate.poses, sides.reference.poses);
+  const double scale = evaluation.alignment.scale;
+  const bool scaled = scale > kMostFactor || scale * kMostFactor < 1;
+  const bool unlike = reference_m > kMostFactor * estimate_m || estimate_m > kMostFactor * reference_m;
+  if (!scaled && !unlike) return;
+  transcript.warn({fmt::format(
+      "the reference extends over {:.3g} m and the estimate over {:.3g} m{}: does one "
+      "of them not move, or is it in another unit?",
+      reference_m, estimate_m, scaled ? fmt::format(" (scale of the alignment {:.3g})", scale) : "")});
 }
 
 void warn_of_poses_with_themselves(const trajectory_error::TrajectoryEvaluation& evaluation,
@@ -139,6 +168,7 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
     return tl::unexpected(changed.error());
   warn_of_few(*evaluation, transcript);
   warn_of_poses_with_themselves(*evaluation, transcript);
+  warn_of_extents(*sides, *evaluation, transcript);
   if (auto written = write_files(options, *sides, *evaluation, *plots, transcript); !written)
     return tl::unexpected(written.error());
   const metric_reports::ComparedFiles files = compared_files(options.files[0], options.files[1], *sides);

@@ -31,7 +31,7 @@ TEST(RowText, LinesOfNamesHaveNoNumbers) {
 
 TEST(RowText, DecimalCommasAreBetweenDigits) {
   for (const char* line :
-       {"1403636579,763556 0,554494 -2,064888", "0,5\t1\t1,5e-3", "1,5;2,5;0", "12,5 rgb/1.png"})
+       {"1403636579,763556 0,554494 -2,064888", "1.5 0,5 0", "0,5\t1\t1,5e-3", "1,5;2,5;0", "12,5 rgb/1.png"})
     EXPECT_TRUE(has_decimal_commas(line)) << line;
   for (const char* line : {"1, 2, 3", "1 ,2", "1,2,3", "0,5 1.5", "1.0,2.0", "1 2 3", "", "1,", ",5 0"})
     EXPECT_FALSE(has_decimal_commas(line)) << line;

@@ -47,6 +47,11 @@ TEST(MeshSampling, TakesTheCentresOfSurfelsAsTheirVertices) {
   ASSERT_TRUE(spread.has_value()) << spread.error().message;
   const auto of_first = std::ranges::count_if(*spread, [](const Vector3d& point) { return point.z() < 4; });
   EXPECT_NEAR(static_cast<double>(of_first), 1000.0 * 4 / 13, 2) << "in proportion to their areas";
+  surfels.normals[1].setZero();
+  const auto refused = check_mesh(surfels, "the reconstruction");
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_TRUE(refused.error().message.starts_with("the reconstruction: surfel 1 has normal 0 0 0"))
+      << refused.error().message;
 }
 
 TEST(MeshSampling, RefusesPointsWithoutASurface) {

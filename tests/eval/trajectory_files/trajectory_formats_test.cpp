@@ -103,6 +103,13 @@ TEST_F(TrajectoryFormats, UnitsOfStampsAreFoundByTheirSizeOrTold) {
   EXPECT_EQ(stamp_of("5000000", io::TimeUnit::nanoseconds), 5'000'000) << "told";
   EXPECT_EQ(stamp_of("5", io::TimeUnit::milliseconds), 5'000'000);
   EXPECT_TRUE(warnings_.empty()) << "nothing was guessed";
+  for (const auto unit :
+       {io::TimeUnit::milliseconds, io::TimeUnit::microseconds, io::TimeUnit::nanoseconds}) {
+    EXPECT_EQ(stamp_of("10.050000", unit), 10'050'000'000) << "decimals are of seconds in one of two files";
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_NE(warnings_[0].find("read as seconds"), std::string::npos) << warnings_[0];
+  }
+  EXPECT_EQ(stamp_of("1305031102175.304", io::TimeUnit::milliseconds), kStamp_ns) << "by its size";
 
   const auto blanks = load("1403636579763555584 1 2 3 0.5 0.5 0.5 -0.5\n");
   ASSERT_TRUE(blanks.has_value()) << blanks.error().message;
