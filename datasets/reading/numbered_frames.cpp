@@ -8,6 +8,8 @@
 #include <string>
 #include <system_error>
 
+#include "datasets/reading/text_matrix.hpp"
+
 namespace fusebench::reading {
 
 namespace {
@@ -85,6 +87,33 @@ Result<std::vector<NumberedFrame>> pair_numbered(const NumberedFiles& color, con
         color.size() - frames.size(), color.size(), depth.size() - frames.size(), depth.size()));
   }
   return frames;
+}
+
+Result<std::vector<NumberedFrame>> list_numbered(const NumberedImages& color, const NumberedImages& depth,
+                                                 std::string_view expected, recording::Recording& recording) {
+  const auto color_files = numbered_files(color.folder, color.names);
+  if (!color_files) return tl::unexpected(color_files.error());
+  const auto depth_files = numbered_files(depth.folder, depth.names);
+  if (!depth_files) return tl::unexpected(depth_files.error());
+  return pair_numbered(*color_files, *depth_files, expected, recording);
+}
+
+Result<Trajectory> read_depth_camera_poses(const NumberedImages& files,
+                                           const calibration::RigCalibration& calibration, double rate_hz,
+                                           recording::Recording& recording) {
+  const auto found = numbered_files(files.folder, files.names);
+  if (!found) return tl::unexpected(found.error());
+  const SE3 T_depth_color = calibration.depth ? calibration.depth->T_color_depth.inverse() : SE3{};
+  Trajectory poses;
+  for (const auto& [index, file] : *found) {
+    const auto T_world_depth = read_pose_matrix(file);
+    if (!T_world_depth) return tl::unexpected(T_world_depth.error());
+    if (*T_world_depth) poses.push_back({frame_time_ns(index, rate_hz), **T_world_depth * T_depth_color});
+  }
+  if (poses.size() < found->size())
+    recording.warnings.push_back(fmt::format("{}: {} of {} poses are no numbers: these frames were lost",
+                                             recording.name, found->size() - poses.size(), found->size()));
+  return poses;
 }
 
 void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view reason, double rate_hz,

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/recording/read_options.hpp"
 #include "datasets/recording/recording.hpp"
 
@@ -54,6 +56,25 @@ using NumberedFiles = std::map<std::int64_t, std::filesystem::path>;
                                                                const NumberedFiles& depth,
                                                                std::string_view expected,
                                                                recording::Recording& recording);
+
+/// Images of one kind: the files of a folder that have such a name.
+struct NumberedImages {
+  std::filesystem::path folder;
+  std::span<const NumberedName> names;
+};
+
+/// The frames of both kinds. Errors: those of numbered_files() and pair_numbered().
+[[nodiscard]] Result<std::vector<NumberedFrame>> list_numbered(const NumberedImages& color,
+                                                               const NumberedImages& depth,
+                                                               std::string_view expected,
+                                                               recording::Recording& recording);
+
+/// Poses T_world_camera of colour, each from a file with the 4x4 matrix of the depth camera's pose, at the
+/// times of their numbers. Files of lost frames (numbers that are not finite) are counted in a warning.
+/// Errors: those of numbered_files() and read_pose_matrix().
+[[nodiscard]] Result<Trajectory> read_depth_camera_poses(const NumberedImages& files,
+                                                         const calibration::RigCalibration& calibration,
+                                                         double rate_hz, recording::Recording& recording);
 
 /// Fills recording.frames from frames in the order of their index, and notes how they got their time.
 /// Missing indices between the first and the last are counted in a warning. frames must not be empty.

@@ -132,12 +132,8 @@ Result<std::map<std::int64_t, std::int64_t>> read_times(const fs::path& file) {
 }
 
 Result<void> add_frames(const fs::path& folder, double rate_hz, recording::Recording& recording) {
-  const auto color = reading::numbered_files(folder / "color", kColor);
-  if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::numbered_files(folder / "depth", kDepth);
-  if (!depth) return tl::unexpected(depth.error());
-  const auto frames =
-      reading::pair_numbered(*color, *depth, "color/<k>.jpg (or .png) and depth/<k>.png", recording);
+  const auto frames = reading::list_numbered({folder / "color", kColor}, {folder / "depth", kDepth},
+                                             "color/<k>.jpg (or .png) and depth/<k>.png", recording);
   if (!frames) return tl::unexpected(frames.error());
   const fs::path times = folder / "frame_times.txt";
   if (!io::is_named(times)) {

@@ -33,15 +33,6 @@ fs::path export_folder(const fs::path& folder) {
   return io::is_named(folder / "EXR_RGBD" / "metadata.json") ? folder / "EXR_RGBD" : folder;
 }
 
-Result<std::vector<reading::NumberedFrame>> list_frames(const fs::path& folder,
-                                                        recording::Recording& recording) {
-  const auto color = reading::numbered_files(folder / "rgb", kColor);
-  if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::numbered_files(folder / "depth", kDepth);
-  if (!depth) return tl::unexpected(depth.error());
-  return reading::pair_numbered(*color, *depth, "rgb/<k>.jpg (or .png) and depth/<k>.exr", recording);
-}
-
 calibration::RigCalibration calibration_of(const Record3dMetadata& metadata) {
   calibration::RigCalibration calibration;
   calibration.color.pinhole = metadata.camera;
@@ -115,7 +106,8 @@ Result<recording::Recording> open_record3d(const fs::path& folder, const recordi
   const fs::path place = export_folder(folder);
   const auto metadata = read_record3d_metadata(place / "metadata.json", recording.warnings);
   if (!metadata) return tl::unexpected(metadata.error());
-  const auto frames = list_frames(place, recording);
+  const auto frames = reading::list_numbered({place / "rgb", kColor}, {place / "depth", kDepth},
+                                             "rgb/<k>.jpg (or .png) and depth/<k>.exr", recording);
   if (!frames) return tl::unexpected(frames.error());
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return Result<calibration::RigCalibration>(calibration_of(*metadata)); },

@@ -88,16 +88,6 @@ Result<void> read_truth(const fs::path& folder, double rate_hz, recording::Recor
   return reading::set_ground_truth(recording, std::move(truth), file);
 }
 
-Result<std::vector<reading::NumberedFrame>> list_frames(const fs::path& folder,
-                                                        recording::Recording& recording) {
-  const auto color = reading::numbered_files(folder / "results", kColor);
-  if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::numbered_files(folder / "results", kDepth);
-  if (!depth) return tl::unexpected(depth.error());
-  return reading::pair_numbered(*color, *depth, "results/frame<k>.jpg (or .png) and results/depth<k>.png",
-                                recording);
-}
-
 }  // namespace
 
 bool is_replica(const fs::path& folder) {
@@ -107,7 +97,9 @@ bool is_replica(const fs::path& folder) {
 Result<recording::Recording> open_replica(const fs::path& folder, const recording::ReadOptions& options) {
   recording::Recording recording = recording::named_recording(folder, "replica");
   if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
-  const auto frames = list_frames(folder, recording);
+  const auto frames =
+      reading::list_numbered({folder / "results", kColor}, {folder / "results", kDepth},
+                             "results/frame<k>.jpg (or .png) and results/depth<k>.png", recording);
   if (!frames) return tl::unexpected(frames.error());
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return published_calibration(folder, recording); }, recording);

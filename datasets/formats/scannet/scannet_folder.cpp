@@ -102,31 +102,11 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
 /// Poses are the depth camera's, as in the .sens file.
 Result<void> read_truth(const fs::path& folder, const calibration::RigCalibration& calibration,
                         double rate_hz, recording::Recording& recording) {
-  const auto files = reading::numbered_files(folder / "pose", kPose);
-  if (!files) return tl::unexpected(files.error());
-  const SE3 T_depth_color = calibration.depth ? calibration.depth->T_color_depth.inverse() : SE3{};
-  Trajectory truth;
-  for (const auto& [index, file] : *files) {
-    const auto T_world_depth = reading::read_pose_matrix(file);
-    if (!T_world_depth) return tl::unexpected(T_world_depth.error());
-    if (*T_world_depth)
-      truth.push_back({reading::frame_time_ns(index, rate_hz), **T_world_depth * T_depth_color});
-  }
-  if (truth.size() < files->size())
-    recording.warnings.push_back(fmt::format("{}: {} of {} poses are no numbers: these frames were lost",
-                                             recording.name, files->size() - truth.size(), files->size()));
-  if (truth.empty()) return reading::read_ground_truth_beside(folder, recording);
+  auto truth = reading::read_depth_camera_poses({folder / "pose", kPose}, calibration, rate_hz, recording);
+  if (!truth) return tl::unexpected(truth.error());
+  if (truth->empty()) return reading::read_ground_truth_beside(folder, recording);
   reading::label_truth(kTruthLabel, recording);
-  return reading::set_ground_truth(recording, std::move(truth), folder / "pose");
-}
-
-Result<std::vector<reading::NumberedFrame>> list_frames(const fs::path& folder,
-                                                        recording::Recording& recording) {
-  const auto color = reading::numbered_files(folder / "color", kColor);
-  if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::numbered_files(folder / "depth", kDepth);
-  if (!depth) return tl::unexpected(depth.error());
-  return reading::pair_numbered(*color, *depth, "color/<k>.jpg (or .png) and depth/<k>.png", recording);
+  return reading::set_ground_truth(recording, *std::move(truth), folder / "pose");
 }
 
 }  // namespace
@@ -140,7 +120,8 @@ bool is_scannet(const fs::path& folder) {
 Result<recording::Recording> open_scannet(const fs::path& folder, const recording::ReadOptions& options) {
   recording::Recording recording = recording::named_recording(folder, "scannet");
   if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
-  const auto frames = list_frames(folder, recording);
+  const auto frames = reading::list_numbered({folder / "color", kColor}, {folder / "depth", kDepth},
+                                             "color/<k>.jpg (or .png) and depth/<k>.png", recording);
   if (!frames) return tl::unexpected(frames.error());
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return published_calibration(folder, frames->front()); }, recording);

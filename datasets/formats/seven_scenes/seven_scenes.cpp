@@ -53,27 +53,12 @@ Result<calibration::RigCalibration> calibration_of(const std::filesystem::path& 
 /// Poses are the depth camera's.
 Result<void> read_truth(const std::filesystem::path& folder, const calibration::RigCalibration& calibration,
                         const recording::ReadOptions& options, recording::Recording& recording) {
-  const auto files = reading::numbered_files(folder, kPose);
-  if (!files) return tl::unexpected(files.error());
-  const SE3 T_depth_color = calibration.depth ? calibration.depth->T_color_depth.inverse() : SE3{};
-  Trajectory truth;
-  std::size_t lost = 0;
-  for (const auto& [index, file] : *files) {
-    const auto T_world_depth = reading::read_pose_matrix(file);
-    if (!T_world_depth) return tl::unexpected(T_world_depth.error());
-    if (!*T_world_depth) ++lost;
-    if (*T_world_depth)
-      truth.push_back(
-          {reading::frame_time_ns(index, reading::frame_rate_hz(options)), **T_world_depth * T_depth_color});
-  }
-  if (lost > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} of {} poses are no numbers: their frames were lost by who tracked them",
-                    recording.name, lost, files->size()));
-  }
-  if (truth.empty()) return reading::read_ground_truth_beside(folder, recording);
+  auto truth = reading::read_depth_camera_poses({folder, kPose}, calibration, reading::frame_rate_hz(options),
+                                                recording);
+  if (!truth) return tl::unexpected(truth.error());
+  if (truth->empty()) return reading::read_ground_truth_beside(folder, recording);
   reading::label_truth(kTruthLabel, recording);
-  return reading::set_ground_truth(recording, std::move(truth), folder / "frame-*.pose.txt");
+  return reading::set_ground_truth(recording, *std::move(truth), folder / "frame-*.pose.txt");
 }
 
 }  // namespace
@@ -89,12 +74,8 @@ Result<recording::Recording> open_seven_scenes(const std::filesystem::path& fold
   auto calibration = recording::choose_calibration(
       folder, options, [&] { return calibration_of(folder); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto color = reading::numbered_files(folder, kColor);
-  if (!color) return tl::unexpected(color.error());
-  const auto depth = reading::numbered_files(folder, kDepth);
-  if (!depth) return tl::unexpected(depth.error());
-  const auto frames = reading::pair_numbered(
-      *color, *depth, "frame-<k>.color.png (or .jpg) and frame-<k>.depth.png", recording);
+  const auto frames = reading::list_numbered(
+      {folder, kColor}, {folder, kDepth}, "frame-<k>.color.png (or .jpg) and frame-<k>.depth.png", recording);
   if (!frames) return tl::unexpected(frames.error());
   reading::add_numbered_frames(*frames, "7-Scenes has no stamps", reading::frame_rate_hz(options), recording);
   if (const auto read = read_truth(folder, *calibration, options, recording); !read)
