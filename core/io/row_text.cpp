@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/io/lower_case.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::io {
@@ -10,13 +11,6 @@ namespace fusebench::io {
 namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lower;
-}
 
 bool is_infinite(std::string_view field) {
   if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);

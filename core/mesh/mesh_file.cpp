@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
+#include <string>
 #include <system_error>
 
+#include "core/io/lower_case.hpp"
 #include "core/mesh/obj_file.hpp"
 #include "core/mesh/ply_file.hpp"
 
@@ -17,9 +17,7 @@ Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
     return fail(ErrorCode::usage, fmt::format("{}: a folder, where a mesh is needed", file.string()),
                 "of a run it is mesh.ply; of a simulated recording the truth is scene.ply");
   }
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = io::lower_case(file.extension().string());
   if (ending == ".ply") return read_ply(file);
   if (ending == ".obj") return read_obj(file);
   return fail(

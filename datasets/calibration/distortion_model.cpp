@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/printable.hpp"
+#include "core/io/lower_case.hpp"
 
 namespace fusebench::calibration {
 
@@ -17,11 +18,8 @@ constexpr std::array<std::string_view, 8> kRadialTangential = {
     "", "radialtangential", "radtan", "pinholeradtan", "plumbbob", "brown", "brownconrady", "opencv"};
 
 std::string plain_name(std::string_view name) {
-  std::string plain;
-  for (const char c : name) {
-    if (c == '-' || c == '_' || c == ' ') continue;
-    plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  }
+  std::string plain = io::lower_case(name);
+  std::erase_if(plain, [](char c) { return c == '-' || c == '_' || c == ' '; });
   return plain;
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/upper_median.hpp"
 
 namespace fusebench::calibration {
 
@@ -17,9 +19,7 @@ double median_of(std::span<const FrameCamera> frames, double PinholeCamera::*par
   std::vector<double> values;
   values.reserve(frames.size());
   for (const FrameCamera& frame : frames) values.push_back(frame.camera.*parameter);
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ void report_rotation(const ImuAlignment& a, Inspection& out) {
 }
 
 /// The accelerometer's axes against those in which the turns are known: of the ground truth, or of the
-/// gyroscope when its own exchange of axes is corrected. Nothing where neither tells.
+/// gyroscope when its own exchange of axes is corrected. Nothing where neither is observable.
 std::optional<measures::AxesChoice> accelerometer_axes(const recording::Recording& recording,
                                                        const Matrix3d& gyroscope_axes,
                                                        const Inspection& out) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/printable.hpp"
+#include "core/io/lower_case.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/reading/image_list.hpp"
@@ -16,17 +17,13 @@ namespace {
 
 constexpr std::string_view kColumns = "timestamp filename timestamp filename";
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 bool in_depth_folder(std::string_view name) {
-  return lower_case(std::filesystem::path(name).parent_path().filename().string()).starts_with("depth");
+  return io::lower_case(std::filesystem::path(name).parent_path().filename().string()).starts_with("depth");
 }
 
-bool is_called_depth(std::string_view name) { return lower_case(name).find("depth") != std::string::npos; }
+bool is_called_depth(std::string_view name) {
+  return io::lower_case(name).find("depth") != std::string::npos;
+}
 
 /// Whether the first of two images is depth, by their folders, else by their names; nothing if both are, or
 /// neither.

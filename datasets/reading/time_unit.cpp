@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "core/base/upper_median.hpp"
 
 namespace fusebench::reading {
 
@@ -34,9 +37,7 @@ Result<std::vector<double>> raw_stamps(const std::filesystem::path& file, std::s
 double median_spacing(const std::vector<double>& stamps) {
   std::vector<double> spacings;
   for (std::size_t i = 1; i < stamps.size(); ++i) spacings.push_back(stamps[i] - stamps[i - 1]);
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle;
+  return upper_median(std::move(spacings));
 }
 
 }  // namespace

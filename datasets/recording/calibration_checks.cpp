@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "core/base/upper_median.hpp"
 
 namespace fusebench::recording {
 
@@ -49,12 +52,10 @@ double median_interval_s(const std::vector<FrameEntry>& frames, std::int64_t Fra
     if (interval_ns > 0) intervals_ns.push_back(interval_ns);  // a depth image may belong to two frames
   }
   if (intervals_ns.empty()) return calibration::kMostReadout_s;
-  const auto middle = intervals_ns.begin() + std::ssize(intervals_ns) / 2;
-  std::nth_element(intervals_ns.begin(), middle, intervals_ns.end());
-  return 1e-9 * static_cast<double>(*middle);
+  return 1e-9 * static_cast<double>(upper_median(std::move(intervals_ns)));
 }
 
-/// A read-out that nobody said is not checked.
+/// A read-out that is not given is not checked.
 Result<void> check_readout(std::string_view table, double readout_s, double sigma_s, double interval_s,
                            const Recording& recording) {
   const bool unknown =

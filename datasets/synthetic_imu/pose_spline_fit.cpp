@@ -10,7 +10,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "core/base/upper_median.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/synthetic_imu/pose_spline.hpp"
 
@@ -136,9 +138,7 @@ double median_spacing_s(const Trajectory& truth) {
   std::vector<std::int64_t> spacing;
   for (std::size_t i = 1; i < truth.size(); ++i)
     spacing.push_back(truth[i].timestamp_ns - truth[i - 1].timestamp_ns);
-  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
-  std::ranges::nth_element(spacing, middle);
-  return seconds_between(0, *middle);
+  return seconds_between(0, upper_median(std::move(spacing)));
 }
 
 /// Weight of a second difference of control points, so that its sum of squares is the regularisation's

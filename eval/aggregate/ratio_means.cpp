@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "eval/registry/replicated_numbers.hpp"
+
 namespace fusebench::aggregate {
 
 namespace {
@@ -18,16 +20,9 @@ constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 /// log[recording][configuration]: natural logarithm of the median; NaN where there is none.
 using Logarithms = std::vector<std::vector<double>>;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 double log_median(const std::vector<double>& values) {
-  if (values.empty()) return kAbsent;
-  return std::log(values.size() == 1 ? values.front() : median_of(values));
+  const auto range = registry::median_range(values);
+  return range ? std::log(range->median) : kAbsent;
 }
 
 double drawn_log_median(const std::vector<double>& values, std::mt19937_64& random) {

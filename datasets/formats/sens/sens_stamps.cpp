@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/upper_median.hpp"
 #include "datasets/reading/time_unit.hpp"
 
 namespace fusebench::formats::sens {
@@ -17,9 +18,7 @@ double median_spacing(std::span<const std::uint64_t> stamps, const std::vector<s
   std::vector<double> spacings;
   for (std::size_t i = 1; i < frames.size(); ++i)
     spacings.push_back(static_cast<double>(stamps[frames[i]] - stamps[frames[i - 1]]));
-  const auto middle = spacings.begin() + std::ssize(spacings) / 2;
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle;
+  return upper_median(std::move(spacings));
 }
 
 /// A first or last stamp that is far from all others rises, too.

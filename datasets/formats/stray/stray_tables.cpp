@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/base/printable.hpp"
+#include "core/base/upper_median.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/reading/numbered_frames.hpp"
@@ -73,10 +74,9 @@ Result<void> for_each_row(const std::filesystem::path& file, std::span<const std
 std::optional<double> specific_force_per_unit(const std::vector<ImuSample>& samples) {
   std::vector<double> lengths;
   for (const ImuSample& sample : samples) lengths.push_back(sample.specific_force_mps2.norm());
-  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  if (*middle > 0.8 && *middle < 1.25) return -kStandardGravity_mps2;
-  if (*middle > 0.8 * kStandardGravity_mps2 && *middle < 1.25 * kStandardGravity_mps2) return -1.0;
+  const double median = upper_median(std::move(lengths));
+  if (median > 0.8 && median < 1.25) return -kStandardGravity_mps2;
+  if (median > 0.8 * kStandardGravity_mps2 && median < 1.25 * kStandardGravity_mps2) return -1.0;
   return std::nullopt;
 }
 

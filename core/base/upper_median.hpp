@@ -1,0 +1,20 @@
+// The median of a list.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace fusebench {
+inline namespace base {
+
+/// The median of the values; of an even number the larger of the two in the middle. Values must not be empty.
+template <class Value>
+[[nodiscard]] Value upper_median(std::vector<Value> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace base
+}  // namespace fusebench
