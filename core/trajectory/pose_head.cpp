@@ -91,26 +91,18 @@ std::string stamp_in(const HeadRow& row, std::size_t column) {
 }
 
 /// A stamp that cannot be in that unit, if there is one. The range is tested with the first stamp: a later
-/// one beyond it is an error of its row.
-std::optional<std::string> stamp_against(const PoseHead& head, std::size_t column, io::TimeUnit unit) {
+/// one beyond it is an error of its row. A unit that is given for several files is not that of stamps with
+/// decimals, which are in seconds, unless their size is of this unit.
+std::optional<std::string> stamp_against(const PoseHead& head, std::size_t column, io::TimeUnit unit,
+                                         bool for_several_files) {
   for (std::size_t i = 0; i < head.rows.size(); ++i) {
     std::string stamp = stamp_in(head.rows[i], column);
     if (!io::parse_number(stamp)) continue;
+    const bool whole = for_several_files && io::unit_by_size(stamp) != unit;
     const bool possible =
-        i == 0 ? io::can_be_in(unit, stamp)
-               : unit == io::TimeUnit::seconds || io::stamp_decimals(stamp) <= static_cast<int>(unit);
+        (i > 0 || io::can_be_in(unit, stamp)) &&
+        (unit == io::TimeUnit::seconds || io::stamp_decimals(stamp) <= (whole ? 0 : static_cast<int>(unit)));
     if (!possible) return stamp;
-  }
-  return std::nullopt;
-}
-
-/// A stamp with decimals, which is in seconds unless its size says that it is in `unit`: of a unit that was
-/// typed for both files.
-std::optional<std::string> decimals_against(const PoseHead& head, std::size_t column, io::TimeUnit unit) {
-  for (const HeadRow& row : head.rows) {
-    std::string stamp = stamp_in(row, column);
-    if (unit != io::TimeUnit::seconds && io::stamp_decimals(stamp) > 0 && io::unit_by_size(stamp) != unit)
-      return stamp;
   }
   return std::nullopt;
 }
@@ -149,7 +141,9 @@ io::TimeUnit stamp_unit_of(const PoseHead& head, const PoseColumns& columns, con
                            const std::filesystem::path& file, std::vector<std::string>& warnings) {
   const HeadRow first = head.rows.empty() ? HeadRow{} : head.rows.front();
   const io::TimeUnit by_size = io::unit_by_size(stamp_in(first, columns.stamp));
-  const auto against = [&](io::TimeUnit unit) { return stamp_against(head, columns.stamp, unit); };
+  const auto against = [&](io::TimeUnit unit, bool for_several_files = false) {
+    return stamp_against(head, columns.stamp, unit, for_several_files);
+  };
   const auto warn = [&](int line, const std::string& what) {
     warnings.push_back(fmt::format("{}:{}: {}", file.string(), line, what));
   };
@@ -164,16 +158,14 @@ io::TimeUnit stamp_unit_of(const PoseHead& head, const PoseColumns& columns, con
                                         to_string(*columns.unit), to_string(*given.unit)));
     return *columns.unit;
   }
-  for (const std::optional<io::TimeUnit>& unit : {given.unit, given.unit ? std::nullopt : given.usual}) {
-    if (!unit) continue;
-    auto stamp = against(*unit);
-    if (!stamp && given.unit && !given.of_this_file) stamp = decimals_against(head, columns.stamp, *unit);
-    if (!stamp || (given.unit && given.of_this_file)) return *unit;
-    if (!given.unit) break;
+  if (given.unit) {
+    const auto stamp = against(*given.unit, !given.of_this_file);
+    if (!stamp || given.of_this_file) return *given.unit;
     warn(first.line, fmt::format("stamps such as {} are no {}: read as {}", printable(*stamp),
-                                 to_string(*unit), to_string(by_size)));
+                                 to_string(*given.unit), to_string(by_size)));
     return by_size;
   }
+  if (given.usual && !against(*given.usual)) return *given.usual;
   if (by_size != io::TimeUnit::seconds)
     warn(first.line, fmt::format("stamps are read as {}, by their size", to_string(by_size)));
   return by_size;

@@ -49,8 +49,9 @@ struct GivenUnit {
 };
 
 /// The unit of the stamps in a column: the named one, else the given one, else the usual one, else by size. A
-/// unit in which the stamps cannot be (io::can_be_in()) is not used, but one that is given for this very
-/// file. Warnings say what was not used, and what was found by size unless it is the second.
+/// unit in which the stamps cannot be (io::can_be_in(); of a unit given for several files: stamps with
+/// decimals, unless their size is of that unit) is not used, but one that is given for this very file.
+/// Warnings say which named or given unit was not used, and what was found by size unless it is the second.
 [[nodiscard]] io::TimeUnit stamp_unit_of(const PoseHead& head, const PoseColumns& columns,
                                          const GivenUnit& given, const std::filesystem::path& file,
                                          std::vector<std::string>& warnings);

@@ -20,17 +20,20 @@ Result<std::optional<PoseVector>> pose_numbers(const io::TextTable& table, const
   std::array<std::size_t, 7> places{};
   std::ranges::copy(columns.position, places.begin());
   std::ranges::copy(columns.quaternion, places.begin() + 3);
-  bool lost = std::ranges::all_of(places, [&](std::size_t column) { return table.text(column).empty(); });
+  if (std::ranges::all_of(places, [&](std::size_t column) { return table.text(column).empty(); }))
+    return std::optional<PoseVector>();
+  bool lost = false;
   PoseVector v = PoseVector::Zero();
-  for (std::size_t i = 0; i < places.size() && !lost; ++i) {
-    if (io::is_nan(table.text(places[i]))) continue;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (io::is_nan(table.text(places[i]))) {
+      lost = true;
+      continue;
+    }
     const Result<double> number = table.number(places[i]);
     if (!number) return tl::unexpected(number.error());
     v[static_cast<Eigen::Index>(i)] = *number;
   }
-  lost = lost || v.tail<4>().isZero(0) ||
-         std::ranges::any_of(places, [&](std::size_t column) { return io::is_nan(table.text(column)); });
-  if (lost) return std::optional<PoseVector>();
+  if (lost || v.tail<4>().isZero(0)) return std::optional<PoseVector>();
   v.head<3>() *= columns.metres_per_unit;
   return std::optional(v);
 }

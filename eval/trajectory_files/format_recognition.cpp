@@ -27,7 +27,6 @@ constexpr std::size_t kEurocColumns = 17;
 constexpr std::size_t kLogHeader = 3;
 constexpr std::size_t kOpenvinsColumns = 20;
 
-constexpr std::string_view kTumNames = "timestamp tx ty tz qx qy qz qw ...";
 constexpr std::string_view kEurocNames = "timestamp px py pz qw qx qy qz ...";
 constexpr std::string_view kOpenvinsNames =
     "timestamp tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 Pt12 Pt13 Pt22 Pt23 Pt33";
@@ -128,8 +127,6 @@ PoseLayout layout_for(TrajectoryFormat format, std::size_t columns) {
   } else if (format == TrajectoryFormat::openvins) {
     layout.names = kOpenvinsNames;
     layout.explained = kOpenvinsColumns;
-  } else {
-    layout.names = kTumNames;
   }
   return layout;
 }
