@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <utility>
 
+#include "core/trajectory/trajectory_extent.hpp"
 #include "datasets/image_logs/sens_log.hpp"
 
 namespace fusebench::external {
@@ -20,23 +20,13 @@ Result<trajectory_files::LoadedTrajectory> load(const SystemTrajectory& trajecto
   return trajectory_files::LoadedTrajectory{trajectory_files::TrajectoryFormat::tum, std::move(*poses), {}};
 }
 
-double extent_m(const Trajectory& poses) {
-  Eigen::AlignedBox3d box;
-  for (const StampedPose& pose : poses) box.extend(pose.T_world_camera.translation);
-  return box.isEmpty() ? 0 : box.diagonal().norm();
-}
-
 /// Poses in another unit are mistaken for bad ones; a factor of a hundred is no bad tracking. Of poses that
 /// are too near to each other it may be.
 Result<void> check_scale(const Trajectory& poses, const recording::Recording& recording,
                          const std::string& file, std::vector<std::string>& warnings) {
   constexpr double kFactor = 100;
-  Trajectory truth;
-  for (const StampedPose& pose : recording.ground_truth) {
-    if (pose.timestamp_ns >= poses.front().timestamp_ns && pose.timestamp_ns <= poses.back().timestamp_ns)
-      truth.push_back(pose);
-  }
-  const double is_m = extent_m(poses), should_be_m = extent_m(truth);
+  const double is_m = trajectory::extent_m(poses);
+  const double should_be_m = trajectory::extent_m(trajectory::within_time_of(recording.ground_truth, poses));
   if (!(should_be_m > 0)) return {};
   const std::string extents =
       fmt::format("{}: the poses extend over {:.3g} m, and the truth over {:.3g} m", file, is_m, should_be_m);

@@ -823,6 +823,7 @@ check_evaluation() {
   refused "numbers by time" 2 'by time' -- eval rpe kitti.txt kitti.txt -d 1 -u s
   curve 1000 1 >other_clock.txt
   refused "another clock" 3 'match within 0.01 s' 'hint:t_offset' -- eval ate gt.txt other_clock.txt
+  prints '^rmse' "another clock, moved back" eval ate gt.txt other_clock.txt --t_offset -1000
   awk '{ print $1, NR, 0, 0, 0, 0, 0, 1 }' gt.txt >line.txt
   refused "a line" 3 'along a straight line' 'hint:origin|yaw' -- eval ate -a line.txt est.txt
   refused "a pipe" 3 'cannot be read as a file' -- eval ate gt.txt <(curve 1 1)

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -10,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/trajectory/trajectory.hpp"
+#include "core/trajectory/trajectory_extent.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
@@ -19,6 +19,7 @@
 #include "eval/evo_results/result_archive.hpp"
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/text/text_file.hpp"
+#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::cli::trajectories {
 
@@ -67,23 +68,17 @@ void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Trans
                    evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
 }
 
-/// Of the poses in the time of the others.
-double extent_m(const Trajectory& poses, const Trajectory& others) {
-  const auto [first, last] = std::ranges::minmax(others, {}, &StampedPose::timestamp_ns);
-  Eigen::AlignedBox3d box;
-  for (const StampedPose& pose : poses) {
-    if (pose.timestamp_ns >= first.timestamp_ns && pose.timestamp_ns <= last.timestamp_ns)
-      box.extend(pose.T_world_camera.translation);
-  }
-  return box.isEmpty() ? 0 : box.diagonal().norm();
-}
-
 /// evo aligns these without a word; the numbers are those of noise or of another unit.
 void warn_of_extents(const Sides& sides, const trajectory_error::TrajectoryEvaluation& evaluation,
                      Transcript& transcript) {
   constexpr double kMostFactor = 100;
-  const double reference_m = extent_m(sides.reference.poses, sides.estimate.poses);
-  const double estimate_m = extent_m(sides.estimate.poses, sides.reference.poses);
+  const Trajectory moved = trajectory::with_clock_offset(
+      sides.estimate.poses, trajectory_files::nanoseconds(evaluation.request.association.offset_s));
+  const Trajectory reference = trajectory::within_time_of(sides.reference.poses, moved);
+  const Trajectory estimate = trajectory::within_time_of(moved, sides.reference.poses);
+  if (reference.empty() || estimate.empty()) return;
+  const double reference_m = trajectory::extent_m(reference);
+  const double estimate_m = trajectory::extent_m(estimate);
   const double scale = evaluation.alignment.scale;
   const bool scaled = scale > kMostFactor || scale * kMostFactor < 1;
   const bool unlike = reference_m > kMostFactor * estimate_m || estimate_m > kMostFactor * reference_m;
