@@ -134,7 +134,7 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
       ->type_name("FILE.html");
   console::add_json_flag(*table1, options.controls.json);
   table1->footer(
-      "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"
+      "What the paper does not define (its direct method, its error) is a reading each; docs/paper.md\n"
       "explains them. Recordings that are not under --data have simulated stand-ins, and the output says\n"
       "which is which. A finished run is not repeated.");
   return table1;
