@@ -10,9 +10,9 @@
 #include <csignal>
 #include <cstdio>
 
+#include "eval/cli/console/progress.hpp"
 #include "eval/record/truth_contradiction.hpp"
 #include "eval/text/control_characters.hpp"
-#include "eval/text/text_layout.hpp"
 
 namespace fusebench::cli::console {
 
@@ -39,16 +39,11 @@ void prepare_standard_streams() {
 }
 
 void print_error(const Error& error) {
-  print_status(fmt::format("error: {}\n", text::without_controls(error.message)));
-  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", text::without_controls(error.hint)));
+  write_error(fmt::format("error: {}\n", text::without_controls(error.message)));
+  if (!error.hint.empty()) write_error(fmt::format("  hint: {}\n", text::without_controls(error.hint)));
 }
 
-void print_status(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
-}
-
-void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print_output(std::string_view text) { write_output(text); }
 
 bool output_arrived() {
   const bool flushed = std::fflush(stdout) == 0;
@@ -62,30 +57,10 @@ bool output_arrived() {
   return false;
 }
 
-void print_progress(std::string_view line) {
-  print_status(fmt::format("{}\n", text::without_controls(line)));
-}
+void print_progress(std::string_view line) { write_error(fmt::format("{}\n", text::without_controls(line))); }
 
 void print_warnings(std::span<const std::string> warnings) {
   for (const std::string& warning : warnings) print_progress("warning: " + warning);
-}
-
-ProgressBar::ProgressBar(std::string title)
-    : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-void ProgressBar::show(std::size_t done, std::size_t total) {
-  if (!terminal_ || total == 0) return;
-  const std::size_t percent = 100 * done / total;
-  if (percent == last_percent_) return;
-  last_percent_ = percent;
-  constexpr std::size_t kWidth = 30;
-  const std::size_t filled = kWidth * done / total;
-  print_status(fmt::format("\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
-                           std::string(kWidth - filled, '.'), done, total));
-}
-
-void ProgressBar::clear() {
-  if (terminal_) print_status("\r\033[K");
 }
 
 std::string summary_line(const record::RunRecord& record) {

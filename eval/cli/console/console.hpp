@@ -4,7 +4,6 @@
 // descriptor closed, or the reader of a pipe gone.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,20 +28,6 @@ void print_output(std::string_view text);  ///< standard output
 [[nodiscard]] bool output_arrived();
 void print_progress(std::string_view line);                  ///< a line on standard error
 void print_warnings(std::span<const std::string> warnings);  ///< a line each: "warning: ..."
-void print_status(std::string_view text);  ///< on standard error, as it is: of a line that is redrawn
-
-/// A bar that redraws itself on a terminal, and is silent elsewhere.
-class ProgressBar {
- public:
-  explicit ProgressBar(std::string title);
-  void show(std::size_t done, std::size_t total);
-  void clear();
-
- private:
-  std::string title_;
-  bool terminal_;
-  std::size_t last_percent_ = 101;
-};
 
 /// "AIE 8.123, ATE 2.31 cm, 240/240 frames, 31.2 fps"; what a run without these says instead.
 [[nodiscard]] std::string summary_line(const record::RunRecord& record);

@@ -9,6 +9,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -86,6 +87,7 @@ std::string to_json(const pose_intensity::PoseIntensity& result) {
 Result<int> run(const AieOptions& options) {
   const auto open = console::open_options(options.reading);
   if (!open) return tl::unexpected(open.error());
+  console::Progress progress("opening " + options.recording.string());
   const auto recording = datasets::open_recording(options.recording, *open);
   if (!recording) return tl::unexpected(recording.error());
   const auto trajectories = load_all(options, *recording);
@@ -93,6 +95,7 @@ Result<int> run(const AieOptions& options) {
   if (trajectories->empty())
     return fail(ErrorCode::usage, "no trajectory is given",
                 "name files, or take the recording's own with --truth");
+  progress.say(fmt::format("comparing the images of {} frames", recording->frames.size()));
   const pose_intensity::ProbeOptions probes{.true_depth = options.true_depth};
   const auto result = pose_intensity::pose_intensity(*recording, *trajectories, probes);
   if (!result) return tl::unexpected(result.error());

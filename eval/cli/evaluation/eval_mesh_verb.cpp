@@ -14,6 +14,7 @@
 #include "core/mesh/scaled_mesh.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -88,12 +89,14 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
 Result<int> run(const MeshVerbOptions& options) {
   const auto request = request_of(options);
   if (!request) return tl::unexpected(request.error());
+  console::Progress progress("reading the meshes");
   auto reconstruction = mesh::read_mesh(options.reconstruction);
   if (!reconstruction) return tl::unexpected(reconstruction.error());
   auto truth = mesh::read_mesh(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const double scale = options.scale.value_or(1.0);
   reconstruction = mesh::scaled(*std::move(reconstruction), scale);
+  progress.say("measuring distances between the meshes");
   const Workers workers(options.threads);
   const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, *truth, *request, workers);
   if (!evaluation) return tl::unexpected(evaluation.error());

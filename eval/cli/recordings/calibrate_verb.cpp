@@ -13,6 +13,7 @@
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
@@ -43,6 +44,8 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   const auto recording = run::open_window(spec->recording, spec->open, spec->frames);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
+  const console::Progress progress(
+      fmt::format("comparing edges of depth and colour of {} frames", recording->frames.size()));
   const Workers workers(options.request.threads);
   const auto fit = inspection_report::estimate_depth_camera(*recording, workers);
   if (!fit) return tl::unexpected(fit.error());
@@ -78,6 +81,7 @@ tl::unexpected<Error> no_samples(const recording::Recording& recording) {
 }
 
 Result<CalibrateTask> prepare(const CalibrateVerbOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   if (!config::needs_imu(spec->config.values())) {
@@ -109,9 +113,9 @@ Result<int> run(const CalibrateVerbOptions& options) {
                 "a calibration needs recorded inertial samples; without --out the result is only shown");
   }
   console::print_warnings(recording.warnings);
-  console::ProgressBar bar(recording.name + " calibrate");
+  console::Progress progress("calibrating " + recording.name);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); }};
   const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
                                                  .translation_prior_m = 0.01 * options.translation_prior_cm,
                                                  .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
@@ -120,7 +124,6 @@ Result<int> run(const CalibrateVerbOptions& options) {
   const Workers workers(options.request.threads);
   const auto calibration =
       batch_estimation::calibrate(recording, task->config.values(), how, workers, control);
-  bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
   const auto written =
       write_calibration(options.out, batch_estimation::calibrated_rig(recording, *calibration));

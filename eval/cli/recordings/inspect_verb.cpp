@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
@@ -6,6 +8,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/inspection/inspection.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -57,6 +60,7 @@ int print(const inspection::Inspection& inspection, const InspectVerbOptions& op
 }
 
 Result<int> run(const InspectVerbOptions& options) {
+  console::Progress progress("opening " + options.recording);
   const auto folder = suites::find_recording(options.recording, options.data);
   auto recording = folder.and_then([&](const auto& found) { return open(options, found); });
   if (!recording && options.json && is_finding(recording.error())) {
@@ -65,6 +69,7 @@ Result<int> run(const InspectVerbOptions& options) {
                  options);
   }
   if (!recording) return tl::unexpected(recording.error());
+  progress.say(fmt::format("inspecting {} frames", recording->frames.size()));
   const Workers workers(options.threads);
   inspection::InspectOptions inspect_options;
   if (options.frames.empty()) inspect_options.expected_frames = published_frames(*folder);

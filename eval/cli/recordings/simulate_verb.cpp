@@ -7,6 +7,7 @@
 
 #include "datasets/simulator/simulation.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/suites/simulation_request.hpp"
@@ -87,11 +88,10 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
   const auto options = simulation_of(chosen);
   if (!options) return tl::unexpected(options.error());
   const Workers workers(chosen.threads);
-  console::ProgressBar bar("simulating");
+  console::Progress progress("simulating " + chosen.out.string());
   simulator::SimulationControl control;
-  control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
+  control.progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   const auto report = simulator::simulate(*options, chosen.out, workers, control);
-  bar.clear();
   if (!report) return tl::unexpected(report.error());
   print_summary(*report);
   console::print_output(chosen.json ? json_of(chosen, *report) : chosen.out.string() + "\n");

@@ -9,6 +9,7 @@
 #include "core/io/staged_folder.hpp"
 #include "eval/batch_estimation/smoothing.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -25,6 +26,7 @@ struct SmoothVerbOptions {
 };
 
 Result<run::PreparedRun> prepare(const SmoothVerbOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   if (!config::needs_imu(spec->config.values())) {
@@ -62,12 +64,11 @@ Result<int> run(const SmoothVerbOptions& options) {
         "a reference trajectory needs recorded inertial samples");
   }
   console::print_warnings(recording.warnings);
-  console::ProgressBar bar(recording.name + " smooth");
+  console::Progress progress("estimating " + recording.name);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); }};
   const Workers workers(options.request.threads);
   const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values(), workers, control);
-  bar.clear();
   if (!smoothed) return tl::unexpected(smoothed.error());
   console::print_warnings(batch_estimation::smoothing_remarks(*smoothed));
   const std::string json = batch_estimation::to_json(*smoothed, recording);

@@ -13,6 +13,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/config/config_access.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/compare/comparison.hpp"
@@ -64,13 +65,16 @@ Result<int> compare(const CompareOptions& options) {
       options.gates.empty() ? Result<compare::Gates>(compare::Gates()) : compare::read_gates(options.gates);
   if (!gates) return tl::unexpected(gates.error());
   if (auto known = check_ignored(options.ignored); !known) return tl::unexpected(known.error());
+  console::Progress progress(fmt::format("reading {}", options.base.string()));
   auto base = run_files::find_runs(options.base);
   if (!base) return tl::unexpected(base.error());
+  progress.say(fmt::format("reading {}", options.fresh.string()));
   auto fresh = run_files::find_runs(options.fresh);
   if (!fresh) return tl::unexpected(fresh.error());
   const auto confirming = options.confirm.empty() ? Result<std::vector<run_files::FoundRun>>()
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
+  progress.say("comparing runs");
   const compare::RunComparison comparison =
       compare::compare_runs(std::move(*base), std::move(*fresh), *gates, *confirming, options.ignored);
   // A file is no terminal, whatever standard output is.

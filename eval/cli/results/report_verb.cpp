@@ -8,6 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/results/recorded_frames.hpp"
 #include "eval/cli/results/result_verbs.hpp"
@@ -31,11 +32,13 @@ struct ReportOptions {
 };
 
 Result<int> report(const ReportOptions& options) {
+  console::Progress progress(fmt::format("reading {}", options.runs.string()));
   const auto runs = run_files::find_runs(options.runs);
   if (!runs) return tl::unexpected(runs.error());
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
+  progress.say(fmt::format("report of {} runs", runs->size()));
   report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
@@ -52,6 +55,7 @@ Result<int> report(const ReportOptions& options) {
   if (options.figures.empty()) return 0;
   const auto format = page::parse_figure_format(options.figure_format);
   if (!format) return tl::unexpected(format.error());
+  progress.say("drawing figures");
   const auto figures = page::write_figures(page.page, options.figures, *format);
   if (!figures) return tl::unexpected(figures.error());
   console::print_progress(fmt::format("{}: {} figures", options.figures.string(), *figures));

@@ -101,13 +101,16 @@ console::Verb add_bench_verb(CLI::App& app) {
       "acceptance criteria prints its summary and ends with 1 if one failed; they also decide about lost "
       "runs.\n"
       "docs/experiments.md says what a suite can ask for.");
-  return {verb, [options, verb] {
-            options->controls.threads_given = verb->count("--threads") > 0;
-            return suites::find_suite(options->invocation.suite).and_then([&](const auto& file) {
-              options->invocation.suite = file;
-              return run_suite(*options);
-            });
-          }};
+  return {.app = verb,
+          .run =
+              [options, verb] {
+                options->controls.threads_given = verb->count("--threads") > 0;
+                return suites::find_suite(options->invocation.suite).and_then([&](const auto& file) {
+                  options->invocation.suite = file;
+                  return run_suite(*options);
+                });
+              },
+          .forks = true};
 }
 
 }  // namespace fusebench::cli::running

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/batch_controls.hpp"
 #include "eval/cli/running/run_verbs.hpp"
@@ -51,6 +52,8 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   }
   const auto outcomes = run_here(plan->jobs, options.controls, recordings->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
+  const console::Progress progress("tables");
+  const console::Heartbeat heartbeat;
   const auto table = reproduction::table1_of(*protocol, *plan, *outcomes);
   if (!table) return tl::unexpected(table.error());
   console::print_output(reproduction::render_table1(*table, options.controls.json ? "json" : options.format));
@@ -87,6 +90,8 @@ Result<int> reproduce_figures(ReproduceOptions options) {
   }
   const auto outcomes = run_here(plan->jobs, options.controls, suite->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
+  const console::Progress progress("drawing figures");
+  const console::Heartbeat heartbeat;
   std::error_code error;
   std::filesystem::create_directories(options.figures, error);
   if (error)
@@ -169,14 +174,17 @@ console::Verb add_reproduce_verb(CLI::App& app) {
   const auto figures_options = std::make_shared<ReproduceOptions>();
   CLI::App* table1 = add_table1(*verb, *table1_options);
   CLI::App* figures = add_figures(*verb, *figures_options);
-  return {verb, [=] {
-            if (figures->parsed()) {
-              figures_options->controls.threads_given = figures->count("--threads") > 0;
-              return reproduce_figures(*figures_options);
-            }
-            table1_options->controls.threads_given = table1->count("--threads") > 0;
-            return reproduce_table1(*table1_options);
-          }};
+  return {.app = verb,
+          .run =
+              [=] {
+                if (figures->parsed()) {
+                  figures_options->controls.threads_given = figures->count("--threads") > 0;
+                  return reproduce_figures(*figures_options);
+                }
+                table1_options->controls.threads_given = table1->count("--threads") > 0;
+                return reproduce_table1(*table1_options);
+              },
+          .forks = true};
 }
 
 }  // namespace fusebench::cli::running

@@ -9,6 +9,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/io/abandoned.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/stop_signals.hpp"
@@ -138,6 +139,7 @@ Result<void> check_alone(const CLI::App& verb) {
 }
 
 Result<run::PreparedRun> prepare(const RunOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   if (!options.like.empty()) return prepare_like(options);
   auto spec = asked_for(options);
   if (!spec) return tl::unexpected(spec.error());
@@ -152,9 +154,9 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   const int replicate = prepared.spec.replicate;
   const std::string title = fmt::format("{} {}{}", prepared.recording.name, prepared.spec.variant,
                                         replicate > 0 ? fmt::format(" replicate {}", replicate) : "");
-  console::ProgressBar bar(title);
+  console::Progress progress(title);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); },
       .stop = &console::stop_requested(),
       .bad_data_is_recorded = false,
       .preparing =
@@ -164,7 +166,6 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
                             prepared.recording.name));
           }};
   auto record = run::execute_run(prepared, control);
-  bar.clear();
   if (!record) return record;
   // What opening it has not said: what was measured in the recording and found of its IMU.
   const std::vector<std::string> said = record::reading_notes(prepared.recording, prepared.spec.recording);

@@ -9,6 +9,7 @@
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/engine_console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/running/suite_conclusion.hpp"
 #include "eval/engine/simulated_recordings.hpp"
 #include "eval/suites/suite_file.hpp"
@@ -29,9 +30,7 @@ Result<std::vector<engine::BatchOutcome>> run_on_cluster(const BenchOptions& opt
   std::error_code ignored;
   const engine::SlurmSite site{std::filesystem::absolute(kept, ignored),
                                std::filesystem::read_symlink("/proc/self/exe", ignored)};
-  auto outcomes = engine::run_on_slurm(plan.jobs, engine, options.slurm, site, console.control());
-  console.clear();
-  return outcomes;
+  return engine::run_on_slurm(plan.jobs, engine, options.slurm, site, console.control());
 }
 
 Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, const suites::Suite& suite,
@@ -119,6 +118,8 @@ Result<int> run_suite(BenchOptions options) {
   console::print_progress(fmt::format(
       "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,
       plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
+  const console::Progress progress("summary of the runs");
+  const console::Heartbeat heartbeat;
   const auto criteria = conclude(*suite, options, *plan, *outcomes);
   if (!criteria) return tl::unexpected(criteria.error());
   if (options.controls.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));

@@ -9,6 +9,7 @@
 
 #include "core/io/staged_file.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 
 namespace fusebench::cli::trajectories {
 
@@ -19,6 +20,10 @@ void add_transcript_options(CLI::App& verb, TranscriptOptions& options, const ch
   verb.add_flag("-v,--verbose,--debug", options.verbose, what_verbose_does);
   verb.add_flag("--no_warnings", options.no_warnings,
                 "Accepted for compatibility with evo: nothing asks before it writes");
+}
+
+Transcript::Transcript(const TranscriptOptions& options) : options_(options) {
+  if (options.silent) console::hide_progress();
 }
 
 void Transcript::note(std::string_view line) {

@@ -28,11 +28,11 @@ inline constexpr const char* kAlwaysComplete =
 /// Prints lines as they come, and keeps them for the log file.
 class Transcript {
  public:
-  explicit Transcript(const TranscriptOptions& options) : options_(options) {}
-  void note(std::string_view line);                     ///< on standard error
-  void warn(const std::vector<std::string>& warnings);  ///< each as "warning: ..."
-  void result(std::string_view text);                   ///< on standard output
-  [[nodiscard]] Result<void> finish() const;            ///< appends to the log file. Error io
+  explicit Transcript(const TranscriptOptions& options);  ///< --silent hides progress from here on
+  void note(std::string_view line);                       ///< on standard error
+  void warn(const std::vector<std::string>& warnings);    ///< each as "warning: ..."
+  void result(std::string_view text);                     ///< on standard output
+  [[nodiscard]] Result<void> finish() const;              ///< appends to the log file. Error io
 
  private:
   TranscriptOptions options_;
