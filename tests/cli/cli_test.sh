@@ -1045,12 +1045,12 @@ check_meshes() {
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
   refused "an empty mesh" 3 'no triangles' -- eval mesh "$(grep ^v rec.obj >points.obj && echo points.obj)" truth.obj
   refused "a broken vertex" 3 'nan.obj:2' -- eval mesh "$(sed '2s/ 4 / nan /' rec.obj >nan.obj && echo nan.obj)" truth.obj
-  refused "a file without its transform" 2 'needs --transform' -- eval mesh rec.obj truth.obj --align file
+  refused "a file without its transform" 2 'requires --transform' -- eval mesh rec.obj truth.obj --align file
   refused "a transform without its mode" 2 'does not use --transform' 'hint:--align file' -- \
     eval mesh rec.obj truth.obj --transform down.txt
   refused "a scaling transform" 3 'no rotation' -- \
     eval mesh rec.obj truth.obj --align file --transform "$(printf '2 0 0 0\n0 2 0 0\n0 0 2 0\n' >double.txt && echo double.txt)"
-  refused "culling from nowhere" 2 'needs --recording' -- eval mesh rec.obj truth.obj --cull depth
+  refused "culling from nowhere" 2 'requires --recording' -- eval mesh rec.obj truth.obj --cull depth
   refused "a recording without culling" 2 '--cull frustum' -- eval mesh rec.obj truth.obj --recording x
   refused "no samples" 2 'samples 0' -- eval mesh rec.obj truth.obj --samples 0
   refused "a threshold of none" 2 'thresholds: 0 .allowed: above 0' -- eval mesh rec.obj truth.obj --thresholds 0

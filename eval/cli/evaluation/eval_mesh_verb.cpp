@@ -139,12 +139,14 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
 }
 
 void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
-  verb.add_option("--cull", options.cull,
-                  "Culling of the true surface by the true poses of a recording: none, frustum, occlusion "
-                  "(visible in the truth), or depth (measured in the depth images)")
-      ->check(CLI::IsMember({"none", "frustum", "occlusion", "depth"}))
-      ->type_name("MODE")
-      ->capture_default_str();
+  auto* cull =
+      verb.add_option(
+              "--cull", options.cull,
+              "Culling of the true surface by the true poses of a recording: none, frustum, occlusion "
+              "(visible in the truth), or depth (measured in the depth images)")
+          ->check(CLI::IsMember({"none", "frustum", "occlusion", "depth"}))
+          ->type_name("MODE")
+          ->capture_default_str();
   verb.add_option("--recording", options.recording,
                   "Folder of the recording of --cull, or the name of one under --data")
       ->type_name("REC");
@@ -163,7 +165,11 @@ void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
       ->check(console::number_range(0.0, 1.0))
       ->type_name("SHARE")
       ->capture_default_str();
+  const std::size_t count = verb.get_options().size();
   console::add_reading_options(verb, options.reading);
+  for (const char* option : {"--cull-every", "--depth-range", "--min-observed"})
+    verb.get_option(option)->needs(cull);
+  for (std::size_t k = count; k < verb.get_options().size(); ++k) verb.get_options()[k]->needs(cull);
   console::add_data_option(verb, options.data);
 }
 
@@ -188,9 +194,7 @@ console::Verb add_eval_mesh_verb(CLI::App& eval) {
                    "Points of either mesh: a number, even over its area, or vertices")
       ->type_name("N|vertices")
       ->capture_default_str();
-  verb->add_option("--seed", options->seed, "Of the points over the area")
-      ->type_name("N")
-      ->capture_default_str();
+  verb->add_option("--seed", options->seed, "Seed of the points over the area [1]")->type_name("N");
   add_culling_options(*verb, *options);
   verb->add_option("--colored", options->colored,
                    "Writes the reconstruction coloured by its distance to the truth")

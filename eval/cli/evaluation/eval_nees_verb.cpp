@@ -117,11 +117,12 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
       ->capture_default_str();
   verb->add_option("--errors", options->errors, "Writes errors, sigmas and NEES of each pose")
       ->type_name("FILE.csv");
-  verb->add_option("--figures", options->figures,
-                   "Draws errors against 3 sigma by axis, and NEES over time (gnuplot)")
-      ->type_name("DIR");
+  auto* figures = verb->add_option("--figures", options->figures,
+                                   "Draws errors against 3 sigma by axis, and NEES over time (gnuplot)")
+                      ->type_name("DIR");
   verb->add_option("--figure-format", options->figure_format, "svg or pdf")
       ->check(CLI::IsMember({"svg", "pdf"}))
+      ->needs(figures)
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");

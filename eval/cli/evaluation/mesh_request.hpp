@@ -26,7 +26,7 @@ struct MeshVerbOptions {
   std::optional<double> scale;
   std::vector<double> thresholds_m = mesh_error::MeshErrorOptions{}.thresholds_m;
   std::string samples = "200000";
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< 1 if not given
   std::string cull = "none";
   std::string recording;
   std::filesystem::path data;

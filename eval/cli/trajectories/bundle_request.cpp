@@ -79,8 +79,6 @@ Result<Bundle> load_all(const BundleOptions& options, Transcript& transcript) {
 }
 
 Result<void> check_reference(const BundleOptions& options, const Bundle& bundle) {
-  if (options.alignment.n_to_align > 0 && !options.alignment.asked())
-    return fail(ErrorCode::usage, "--n_to_align without an alignment", "-a, -s or --align MODE aligns");
   if ((options.alignment.asked() || options.sync) && !bundle.has_reference)
     return fail(ErrorCode::usage,
                 fmt::format("{} needs a reference", options.sync ? "--sync" : "an alignment"),

@@ -8,6 +8,7 @@
 #include "eval/cli/trajectories/clock_request.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
+#include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/metric_reports/trajectories_plot.hpp"
@@ -27,7 +28,7 @@ metric_reports::TrajectoriesPlot plot_of(const Bundle& bundle, const std::string
   return plot;
 }
 
-Result<int> run_traj(BundleOptions options) {
+Result<int> run_traj(const CLI::App& verb, BundleOptions options) {
   if (auto taken = take_leading_format(options.files, options.format); !taken)
     return tl::unexpected(taken.error());
   if (options.files.empty() && options.reference.empty())
@@ -39,6 +40,16 @@ Result<int> run_traj(BundleOptions options) {
   Transcript transcript(options.transcript);
   const auto bundle = bundle_of(options, transcript);
   if (!bundle) return tl::unexpected(bundle.error());
+  OptionContext context{.request = {},
+                        .has_stamps = bundle->has_stamps,
+                        .associates = options.alignment.asked() || options.sync,
+                        .draws = !plots->empty()};
+  const auto alignment = aligned_by(options.alignment, {});
+  if (!alignment) return tl::unexpected(alignment.error());
+  context.request.alignment = *alignment;
+  const auto without_effect = warnings_of_effects(verb, context);
+  if (!without_effect) return tl::unexpected(without_effect.error());
+  transcript.warn(*without_effect);
   std::vector<metric_reports::ListedTrajectory> listed;
   for (const NamedFile& entry : bundle->trajectories) listed.push_back(entry.trajectory);
   if (auto saved = save_bundle(options, *bundle, transcript); !saved) return tl::unexpected(saved.error());
@@ -123,7 +134,7 @@ console::Verb add_eval_traj_verb(CLI::App& eval) {
   add_bundle_options(*verb, *options);
   add_bundle_outputs(*verb, *options);
   verb->footer("docs/evo.md lists evo's flags. Exit code 3 for files that cannot be read or aligned.");
-  return {verb, [options] { return run_traj(*options); }};
+  return {verb, [verb, options] { return run_traj(*verb, *options); }};
 }
 
 }  // namespace fusebench::cli::trajectories

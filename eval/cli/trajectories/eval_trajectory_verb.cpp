@@ -14,6 +14,7 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/trajectories/clock_request.hpp"
+#include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/evo_results/result_archive.hpp"
@@ -139,7 +140,7 @@ Result<void> write_files(const TrajectoryOptions& options, const Sides& sides,
   });
 }
 
-Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
+Result<int> run(const CLI::App& verb, TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
   if (auto taken = take_two_files(options); !taken) return tl::unexpected(taken.error());
   std::vector<std::string> warnings;
   auto request = request_of(options, metric, warnings);
@@ -151,6 +152,13 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   const auto sides = load(options, request->protocol, transcript);
   if (!sides) return tl::unexpected(sides.error());
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
+  const auto without_effect =
+      warnings_of_effects(verb, {.request = *request,
+                                 .has_stamps = sides->have_stamps(),
+                                 .draws = !plots->empty(),
+                                 .draws_over_distance = options.error_plot.abscissa == "distances"});
+  if (!without_effect) return tl::unexpected(without_effect.error());
+  transcript.warn(*without_effect);
   auto evaluation = trajectory_error::evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
   std::optional<reference_clock::ReferenceClock> clock;
@@ -263,11 +271,13 @@ void add_error_plot_options(CLI::App& verb, ErrorPlotOptions& options) {
       ->capture_default_str();
   verb.add_option("--plot_colormap_min", options.colour_min, "Error of the first colour; default: the least")
       ->type_name("E");
-  verb.add_option("--plot_colormap_max", options.colour_max, "Error of the last colour; default: the largest")
-      ->type_name("E");
+  auto* largest = verb.add_option("--plot_colormap_max", options.colour_max,
+                                  "Error of the last colour; default: the largest")
+                      ->type_name("E");
   verb.add_option("--plot_colormap_max_percentile", options.colour_max_percentile,
                   "Percentile of the errors for the last colour, in place of --plot_colormap_max")
       ->check(console::number_range(0.0, 100.0))
+      ->excludes(largest)
       ->type_name("P");
   verb.add_flag("--plot_full_ref", options.full_reference,
                 "Draws all of the reference, not only what was compared");
@@ -299,7 +309,7 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
   verb->footer(
       "docs/metrics.md defines the protocols, docs/evo.md lists evo's flags. Exit code 3 for files that "
       "cannot be compared.");
-  return {verb, [options, metric] { return run(*options, metric); }};
+  return {verb, [verb, options, metric] { return run(*verb, *options, metric); }};
 }
 
 }  // namespace
