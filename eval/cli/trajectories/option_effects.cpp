@@ -65,6 +65,8 @@ bool has_relation(const OptionContext& c) {
   return !has_segments(c) && (usual || !is_tum(c));
 }
 
+bool has_delta(const OptionContext& c) { return c.request.motions != MotionRule::each_to_each; }
+
 bool has_tolerance(const OptionContext& c) {
   return c.request.motions == MotionRule::all && c.request.delta.unit != DeltaUnit::frames;
 }
@@ -114,6 +116,8 @@ constexpr std::array kRows{
     OptionRow{"--pose_relation", has_relation,
               "--protocol tum computes trans_part and angle_deg, rpg, eth3d and kitti errors of segments; "
               "--protocol evo computes any relation"},
+    OptionRow{"--delta", has_delta, "with --protocol tum, --all_pairs compares all pairs of poses"},
+    OptionRow{"--delta_unit", has_delta, "with --protocol tum, --all_pairs compares all pairs of poses"},
     OptionRow{"--delta_tol", has_tolerance, "it requires --all_pairs and --delta_unit m, d, r or s"},
     OptionRow{"--pairs_from_reference", selects_motions,
               "it requires --protocol evo and --delta_unit m, d, r or s"},
