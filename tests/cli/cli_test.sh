@@ -761,7 +761,7 @@ check_evaluation() {
   grep -Eq '"(errors|timestamps_ns)"' stdout && complain "JSON lists errors that nobody asked for"
   prints '"errors": \[' "JSON with each error" eval rpe gt.txt est.txt --json --all_errors
   prints '"timestamps_ns": \[' "JSON with each stamp" eval rpe gt.txt est.txt --json --all_errors --protocol tum
-  refused "each error of no JSON" 2 'all_errors is for --json' 'hint:--errors' -- eval rpe gt.txt est.txt --all_errors
+  refused "each error of no JSON" 2 'all_errors requires --json' 'hint:--errors' -- eval rpe gt.txt est.txt --all_errors
   prints 'rmse' "errors as a file" eval ate gt.txt est.txt --errors errors/ate.csv
   [[ $(head -1 errors/ate.csv) == timestamp_ns,trans_part_m ]] || complain "errors as a file: $(head -1 errors/ate.csv)"
   [[ $(wc -l <errors/ate.csv) == 61 ]] || complain "errors as a file: not 60 errors"
@@ -795,7 +795,7 @@ check_evaluation() {
 
   refused "a folder as a trajectory" 3 '\.: a folder, where a trajectory is needed' 'hint:trajectory\.tum' -- eval ate gt.txt .
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
-  refused "one file" 2 'GT and EST, and 1 is given' -- eval ate gt.txt
+  refused "one file" 2 'GT and EST; 1 is given' -- eval ate gt.txt
   refused "no metric" 2 'fusebench eval. is given without a verb' -- eval
   refused "unknown protocol" 2 "unknown protocol 'tums'" 'hint:evo, tum' -- eval ate gt.txt est.txt --protocol tums
   refused "unknown relation" 2 'angle' -- eval ate gt.txt est.txt -r angle
@@ -931,7 +931,7 @@ check_evo() {
   refused "a bag" 2 'bags are not read' 'hint:--save_as_tum' -- eval ape bag run.bag /gt /est
   refused "a bag of ROS 2" 2 'bags are not read' 'hint:evo_traj bag2' -- eval traj bag2 run.db3 --all_topics
   refused "an unknown format" 2 "trajectory format 'tumm'" -- eval ape tumm gt.txt est.txt
-  refused "five files" 2 'two files are compared, GT and EST, and 5 are given' -- eval ape a b c d e
+  refused "five files" 2 'two files are required, GT and EST; 5 are given' -- eval ape a b c d e
   refused "a picture that is none" 2 'plot.png: plots are drawn as .svg or .pdf' 'hint:PNG' -- eval ape gt.txt est.txt --plot plot.png
   refused "no counterpart" 2 "evo's --rerun has no counterpart" 'hint:--save_plot' -- eval ape tum gt.txt est.txt --rerun
   refused "a misspelt option" 2 'eval ate. has no option --alignn \(nearest: --align\)' -- eval ape gt.txt est.txt --alignn
@@ -1030,7 +1030,7 @@ check_meshes() {
     cmp -s again_link.ply colored.ply && [[ $(cat kept.ply) == old ]] || complain "--colored changes the target of a link"
 
   awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
-  refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \
+  refused "an icp that sticks" 3 'ended in a wrong minimum' 'hint:--trajectories TRUTH ESTIMATE' -- \
     eval mesh first_camera.obj truth.obj --align icp
   awk '/^v/ { print "v", $2 * 0.9063 - $3 * 0.4226, $2 * 0.4226 + $3 * 0.9063, $4; next } { print }' truth.obj >turned.obj
   checks=$((checks + 1))
@@ -1039,7 +1039,7 @@ check_meshes() {
   "$binary" eval mesh turned.obj truth.obj --align icp --json >stdout 2>stderr || complain "icp from far, JSON: exit code $?"
   grep -q '"doubt": "icp had no start, moved .*--trajectories TRUTH ESTIMATE' stdout || complain "the doubt of icp from far is not in JSON"
   prints '"doubt": null' "no doubt of icp in JSON" eval mesh rec.obj truth.obj --align icp --json
-  refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
+  refused "millimetres for metres" 3 'probably not in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
   refused "a folder as a mesh" 2 '\.: a folder, where a mesh is needed' 'hint:mesh\.ply' -- eval mesh . truth.obj
   refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
@@ -1147,9 +1147,9 @@ check_exports() {
   diff -r exported/again exported/converted >stderr || complain "convert writes another folder than export --format tum"
   grep -q '^  next: fusebench inspect exported/converted$' stdout || complain "convert does not say what is next"
   mkdir nothing
-  refused "nothing that is known" 3 'nothing: not a recording of a known format; known are eth3d ' 'hint:docs/own-camera.md' -- \
+  refused "nothing that is known" 3 'nothing: not a recording of a supported format; supported are eth3d ' 'hint:docs/own-camera.md' -- \
     convert nothing --out out
-  refused "a file of no known format" 3 'stdout: not a recording of a known format' -- convert stdout --out out
+  refused "a file of no known format" 3 'stdout: not a recording of a supported format' -- convert stdout --out out
   mkdir ros2 && : >ros2/room_0.mcap
   refused "a bag of ROS 2" 2 'ros2: bags of ROS 2 ' 'hint:rosbags-convert' -- convert ros2 --out out
 

@@ -53,7 +53,8 @@ bool output_arrived() {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
-  print_error({ErrorCode::io, "standard output cannot be written", "is there room where it goes to?"});
+  print_error(
+      {ErrorCode::io, "standard output cannot be written", "is there free space at its destination?"});
   return false;
 }
 

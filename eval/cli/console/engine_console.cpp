@@ -41,7 +41,7 @@ void EngineConsole::tell(std::size_t index, const engine::BatchOutcome& outcome)
   const bool more = outcome.resumed && resumed_ == kMostRows;
   print_progress(fmt::format("[{}/{}] {}: {}{}{}", told_, jobs_.size(), engine::to_string(jobs_[index]),
                              outcome.resumed && !outcome.skipped ? "(was there) " : "", ending_of(outcome),
-                             more ? "; others that were there are not told" : ""));
+                             more ? "; further finished runs are not listed" : ""));
 }
 
 void EngineConsole::show(const engine::EngineState& state) {

@@ -57,7 +57,7 @@ std::string flag_name(const std::string& argument) {
 }
 
 std::string help_of(const CLI::App& verb) {
-  return fmt::format("`{} --help` says what is allowed", full_name(verb));
+  return fmt::format("`{} --help` lists what is allowed", full_name(verb));
 }
 
 Error unknown_verb(const CLI::App& app, const std::string& name) {

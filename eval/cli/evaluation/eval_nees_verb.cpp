@@ -101,13 +101,13 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
   std::vector<std::string> modes;
   for (const auto& [name, mode] : kNeesAlignments) modes.emplace_back(name);
   verb->add_option("--align", options->align,
-                   "Alignment of the estimate: none, se3, yaw (and position), or origin (the first pair); a "
-                   "fit hides part of the errors")
+                   "Alignment of the estimate: none, se3, yaw (and position), or origin (the first pair); an "
+                   "alignment reduces the errors")
       ->type_name("MODE")
       ->check(CLI::IsMember(modes))
       ->capture_default_str();
   verb->add_option("--t_max_diff", options->association.max_difference_s,
-                   "The reference is interpolated at the estimate's stamps, in gaps of up to so much")
+                   "The reference is interpolated at the estimate's stamps in gaps up to this")
       ->check(console::not_negative())
       ->type_name("S")
       ->capture_default_str();

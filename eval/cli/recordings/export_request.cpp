@@ -29,10 +29,9 @@ Result<recording::Recording> open_for_export(const ExportRequest& request) {
 /// A program that is told its file reads any name; this one opens a file by the ending of its name.
 Result<void> check_ending(const ExportRequest& request) {
   if (request.format != exports::ExportFormat::sens || request.out.extension() == ".sens") return {};
-  return fail(
-      ErrorCode::usage,
-      fmt::format("--out {}: a recording in this format is known by its ending, .sens", request.out.string()),
-      fmt::format("--out {}.sens", request.out.string()));
+  return fail(ErrorCode::usage,
+              fmt::format("--out {}: files of this format must end with .sens", request.out.string()),
+              fmt::format("--out {}.sens", request.out.string()));
 }
 
 }  // namespace

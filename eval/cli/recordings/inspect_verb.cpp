@@ -99,9 +99,8 @@ console::Verb add_inspect_verb(CLI::App& app) {
   console::add_data_option(*verb, options->data);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Findings are errors (do not trust results on this recording), warnings and notes; docs/inspect.md "
-      "lists\n"
-      "their codes. Exit code 3 if there is an error.");
+      "Findings are errors (results on this recording are not valid), warnings and notes; docs/inspect.md "
+      "lists\ntheir codes. Exit code 3 if there is an error.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -59,10 +59,10 @@ Result<int> run(const PrepareVerbOptions& options) {
 
 console::Verb add_prepare_verb(CLI::App& app) {
   auto options = std::make_shared<PrepareVerbOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "prepare",
-      "Measures from the images what the calibration leaves open (read-outs of colour and depth, delay of "
-      "depth), and checks the IMU");
+  CLI::App* verb =
+      app.add_subcommand("prepare",
+                         "Measures from the images the timing that the calibration does not contain "
+                         "(read-outs of colour and depth, delay of depth), and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);

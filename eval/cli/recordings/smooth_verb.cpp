@@ -59,7 +59,7 @@ Result<int> run(const SmoothVerbOptions& options) {
   if (recording.imu_source == recording::ImuSource::synthetic) {
     return fail(
         ErrorCode::usage,
-        fmt::format("the IMU of '{}' is made from its ground truth, which would become part of the reference",
+        fmt::format("the IMU of '{}' is made from its ground truth, so the reference would depend on it",
                     recording.name),
         "a reference trajectory needs recorded inertial samples");
   }
@@ -91,9 +91,8 @@ console::Verb add_smooth_verb(CLI::App& app) {
       ->required();
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "The trajectory is labelled \"pseudo ground truth\": it comes from the recording that it may be "
-      "compared "
-      "with.\nAs groundtruth.txt beside the images it keeps that label.");
+      "The trajectory is labelled \"pseudo ground truth\", because it is estimated from the same "
+      "recording.\nAs groundtruth.txt next to the images it keeps this label.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -107,10 +107,9 @@ console::Verb add_compare_verb(CLI::App& app) {
   verb->add_option("--confirm", options->confirm,
                    "Repeated runs of NEW: times and memory fail their gates only if these confirm it")
       ->type_name("DIR");
-  verb->add_option(
-          "--ignore-options", options->ignored,
-          "Compares runs that differ in this option, or in all whose keys begin so (patches.); may be "
-          "repeated")
+  verb->add_option("--ignore-options", options->ignored,
+                   "Compares runs that differ in this option, or in all options whose keys start with KEY "
+                   "(patches.); repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY");
   verb->add_option(
@@ -120,8 +119,8 @@ console::Verb add_compare_verb(CLI::App& app) {
       ->check(
           CLI::IsMember({"table", "markdown", "json", "junit", "gbench", "github-benchmark", "openmetrics"}))
       ->capture_default_str();
-  verb->add_option("--out", options->out, "Writes there instead of standard output")->type_name("FILE");
-  verb->add_flag("--all", options->all, "Shows gates that are unchanged, too (table and markdown)");
+  verb->add_option("--out", options->out, "Writes to FILE instead of standard output")->type_name("FILE");
+  verb->add_flag("--all", options->all, "Also shows gates without a change (table and markdown)");
   console::add_width_option(*verb, options->width);
   return {verb, [options] { return compare(*options); }};
 }

@@ -73,10 +73,10 @@ console::Verb add_report_verb(CLI::App& app) {
   console::add_data_option(*verb, options->data);
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
       ->type_name("TEXT");
-  auto* figures = verb->add_option("--figures", options->figures,
-                                   "Writes every chart as a file for papers as well, and beside it the "
-                                   "script that draws it (gnuplot)")
-                      ->type_name("DIR");
+  auto* figures =
+      verb->add_option("--figures", options->figures,
+                       "Also writes every chart as a file for papers, with the gnuplot script that draws it")
+          ->type_name("DIR");
   verb->add_option("--figure-format", options->figure_format, "svg or pdf")
       ->check(CLI::IsMember({"svg", "pdf"}))
       ->needs(figures)

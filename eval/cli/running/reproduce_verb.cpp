@@ -45,7 +45,7 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   const auto plan = reproduction::plan_table1(*protocol, *recordings, options.batch, options.extent);
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& name : plan->absent)
-    console::print_progress(fmt::format("left out, not there: {}", name));
+    console::print_progress(fmt::format("left out, does not exist: {}", name));
   if (options.controls.dry_run) {
     print_preview({plan->jobs, {}, {}}, options.controls);
     return 0;
@@ -122,26 +122,26 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   options.format = "markdown";
   console::add_data_option(*table1, options.batch.data);
   add_running_options(*table1, options);
-  table1->add_option("--reading", options.extent.readings, "Only this reading, by its name; may be repeated")
+  table1->add_option("--reading", options.extent.readings, "Only this reading; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   table1
       ->add_option("--only", options.batch.only,
-                   "Only some recordings: recording=TEXT (the name contains it); may be repeated")
+                   "Only some recordings: recording=TEXT (the name contains it); repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   table1->add_option("--format", options.format, "markdown or latex")
       ->check(CLI::IsMember({"markdown", "latex"}))
       ->capture_default_str();
   table1->add_flag("--all-seeds", options.extent.factorial_everywhere,
-                   "The factorial over all recordings, and not only over the first one of each column");
+                   "Makes the factorial for all recordings instead of the first one of each column");
   table1->add_option("--page", options.page, "Writes the tables as a page as well (HTML, needs no network)")
       ->type_name("FILE.html");
   console::add_json_flag(*table1, options.controls.json);
   table1->footer(
-      "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"
-      "explains them. Recordings that are not under --data have simulated stand-ins, and the output says\n"
-      "which is which. A finished run is not repeated.");
+      "A reading is one interpretation of definitions that the paper leaves open (direct method, "
+      "error);\ndocs/table1.md explains them. Recordings that are not under --data are replaced by simulated "
+      "ones,\nwhich the output labels. A finished run is not repeated.");
   return table1;
 }
 
@@ -168,7 +168,8 @@ CLI::App* add_figures(CLI::App& verb, ReproduceOptions& options) {
 
 console::Verb add_reproduce_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "reproduce", "Runs what the paper's table or its figures need, and shows it beside what is published");
+      "reproduce",
+      "Makes the runs of the paper's table or figures, and shows them next to the published ones");
   verb->require_subcommand(1);
   const auto table1_options = std::make_shared<ReproduceOptions>();
   const auto figures_options = std::make_shared<ReproduceOptions>();

@@ -44,7 +44,7 @@ Result<void> check_options(const RunOptions& options) {
   const auto useless = [](const std::string& option, std::string_view why) {
     return fail(ErrorCode::usage, fmt::format("{} does nothing with --system: {}", option, why));
   };
-  if (options.profile) return useless("--profile", "an external program's stages are not known");
+  if (options.profile) return useless("--profile", "the stages of an external program cannot be timed");
   for (const std::string& set : options.request.sets) {
     if (!set.starts_with("evaluation."))
       return useless("--set " + set, "only evaluation.* counts; its own options belong into its command");
@@ -131,9 +131,9 @@ Result<void> check_alone(const CLI::App& verb) {
   for (const char* const option : {"--variant", "--imu", "--config", "--frames", "--prepare", "--repetition",
                                    "--replicates", "--system"}) {
     if (verb.count(option) > 0)
-      return fail(
-          ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
-          "a record says variant, options, IMU, frames, repetition and replicate; --set changes an option");
+      return fail(ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
+                  "a record contains variant, options, IMU, frames, repetition and replicate; --set changes "
+                  "an option");
   }
   return {};
 }
@@ -161,9 +161,9 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
       .bad_data_is_recorded = false,
       .preparing =
           [&] {
-            console::print_progress(
-                fmt::format("{}: measures what its calibration leaves open (--prepare off: it does not)",
-                            prepared.recording.name));
+            console::print_progress(fmt::format(
+                "{}: measuring the timing that its calibration does not contain (--prepare off skips this)",
+                prepared.recording.name));
           }};
   auto record = run::execute_run(prepared, control);
   if (!record) return record;
@@ -222,8 +222,8 @@ console::Verb add_run_verb(CLI::App& app) {
   verb->get_option("RECORDING")->required(false);  // a record names one
   options->request.prepare = "auto";
   verb->add_option("--prepare", options->request.prepare,
-                   "auto: first measures, once for a recording, what its calibration leaves open (`fusebench "
-                   "prepare`), and runs with that; off: takes the calibration as it is")
+                   "auto: measures the timing that the calibration does not contain (`fusebench prepare`, "
+                   "once per recording) and uses it; off: uses the calibration unchanged")
       ->check(CLI::IsMember({"auto", "off"}))
       ->capture_default_str();
   verb->add_option(
@@ -241,10 +241,9 @@ console::Verb add_run_verb(CLI::App& app) {
       ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N")
       ->capture_default_str();
-  verb->add_option(
-          "--replicates", options->replicates,
-          "Makes the run N times from initial poses that differ by noise far below what sensors resolve "
-          "(system.replicate_noise): what differs is chance")
+  verb->add_option("--replicates", options->replicates,
+                   "Number of runs, whose initial poses differ by noise far below the resolution of the "
+                   "sensors (system.replicate_noise): their results differ by chance")
       ->check(CLI::Range(1, run::kMostReplicates))
       ->type_name("N")
       ->capture_default_str();

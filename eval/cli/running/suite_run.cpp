@@ -48,7 +48,7 @@ Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, 
 Result<void> set_executor(BenchOptions& options) {
   if (options.executor == "local") {
     if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())
-      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg are for --executor slurm");
+      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg require --executor slurm");
     share_threads(options.controls, options.invocation.options);
     return {};
   }
@@ -58,7 +58,8 @@ Result<void> set_executor(BenchOptions& options) {
   options.slurm.at_once = at_once;
   options.slurm.cpus = at_once * threads;
   if (!options.controls.engine.repeat_finished) return {};
-  return fail(ErrorCode::usage, "--repeat is for --executor local", "another --out starts afresh");
+  return fail(ErrorCode::usage, "--repeat requires --executor local",
+              "pass another --out to repeat all runs");
 }
 
 /// Returns when everything is in the queue.
@@ -68,8 +69,8 @@ Result<int> submit(const BenchOptions& options, const suites::Suite& suite, cons
   if (!outcomes) return tl::unexpected(outcomes.error());
   const std::string out = options.invocation.options.out.string();
   console::print_progress(
-      fmt::format("{}: submitted; `fusebench collect {}` shows what is there, and the same command without "
-                  "--submit waits for the rest and submits again what was lost",
+      fmt::format("{}: submitted; `fusebench collect {}` shows finished runs, and the same command without "
+                  "--submit waits for the others and resubmits lost runs",
                   suite.name, out));
   return 0;
 }
@@ -113,7 +114,7 @@ Result<int> run_suite(BenchOptions options) {
   if (counts.total == 0) {
     return fail(ErrorCode::data_missing,
                 fmt::format("suite '{}': none of the recordings can be opened", suite->name),
-                "the lines above say why");
+                "the lines above give the reasons");
   }
   console::print_progress(fmt::format(
       "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,

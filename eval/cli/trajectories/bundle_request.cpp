@@ -175,7 +175,7 @@ Result<void> save_bundle(const BundleOptions& options, const Bundle& bundle, Tra
         return fail(ErrorCode::usage, fmt::format("two trajectories would be written into {}", file.string()),
                     "give their files different names, or save them one by one");
       if (std::filesystem::equivalent(file, entry.file, ignored))
-        return fail(ErrorCode::usage, fmt::format("{} would be replaced by what was made of it", entry.file),
+        return fail(ErrorCode::usage, fmt::format("{} would be replaced by its own result", entry.file),
                     "run it in another folder: results go into the current one");
       outputs.emplace_back(file, tum ? trajectory::tum_text(entry.trajectory.poses)
                                      : trajectory_files::kitti_text(entry.trajectory.poses));

@@ -34,7 +34,7 @@ Result<int> run_traj(const CLI::App& verb, BundleOptions options) {
   if (options.files.empty() && options.reference.empty())
     return fail(
         ErrorCode::usage, "no trajectory is given",
-        "`fusebench eval traj FILE...`; a format may stand before them: tum, kitti, euroc, log or openvins");
+        "`fusebench eval traj FILE...`, with an optional format first: tum, kitti, euroc, log or openvins");
   const auto plots = plot_files(options.plot);
   if (!plots) return tl::unexpected(plots.error());
   Transcript transcript(options.transcript);
@@ -72,17 +72,17 @@ Result<int> run_traj(const CLI::App& verb, BundleOptions options) {
 
 void add_bundle_options(CLI::App& verb, BundleOptions& options) {
   verb.add_option("FILES", options.files,
-                  "Trajectories; a format may stand before them, as with evo: tum a.txt b.txt")
+                  "Trajectories, with an optional format first, as in evo: tum a.txt b.txt")
       ->type_name("");
   verb.add_option("--format", options.format,
                   "Format of all files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
   verb.add_option("--stamp_unit", options.stamp_unit, kStampUnitHelp)->type_name("UNIT[,UNIT]");
   verb.add_option("--ref", options.reference,
-                  "The reference, which the others are aligned to and which is listed last")
+                  "The reference; the others are aligned to it, and it is listed last")
       ->type_name("FILE");
   add_alignment_options(verb, options.alignment);
-  verb.add_flag("--sync", options.sync, "Keeps of each the poses that the reference has a stamp for");
+  verb.add_flag("--sync", options.sync, "Keeps only poses with a stamp of the reference");
   verb.add_option("--t_max_diff", options.t_max_diff, "Largest difference of stamps")
       ->check(console::not_negative())
       ->type_name("S")

@@ -63,10 +63,9 @@ std::string errors_text(const trajectory_error::ErrorSeries& series) {
 void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Transcript& transcript) {
   constexpr double kFew = 0.5;
   if (evaluation.coverage >= kFew) return;
-  transcript.warn(
-      {fmt::format("only {} of {} possible pairs were compared ({:.1f} %): the numbers say little "
-                   "about the rest",
-                   evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
+  transcript.warn({fmt::format(
+      "only {} of {} possible pairs were compared ({:.1f} %): the numbers do not describe the rest",
+      evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
 }
 
 /// evo aligns these without a word; the numbers are those of noise or of another unit.
@@ -185,7 +184,7 @@ Result<int> run(const CLI::App& verb, TrajectoryOptions options, trajectory_erro
 
 void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("GT EST", options.files,
-                  "Reference and estimate; a format may stand before them, as with evo: tum ref.txt est.txt")
+                  "Reference and estimate, with an optional format first, as in evo: tum ref.txt est.txt")
       ->type_name("");
   verb.add_option("--format", options.format,
                   "Format of both files: tum, kitti, euroc, log or openvins; recognised if not given")
@@ -241,10 +240,9 @@ void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
 }
 
 void add_offset_option(CLI::App& verb, TrajectoryOptions& options) {
-  verb.add_flag(
-      "--fit_offset", options.fit_offset,
-      "Also gives the error after SE3 alignment and a fitted offset of the reference's body from the "
-      "camera (markers of a motion capture), with its standard deviations");
+  verb.add_flag("--fit_offset", options.fit_offset,
+                "Also computes the error after SE3 alignment with a fitted offset between camera and "
+                "motion-capture body, with its standard deviations");
 }
 
 void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
@@ -280,7 +278,7 @@ void add_error_plot_options(CLI::App& verb, ErrorPlotOptions& options) {
       ->excludes(largest)
       ->type_name("P");
   verb.add_flag("--plot_full_ref", options.full_reference,
-                "Draws all of the reference, not only what was compared");
+                "Draws the whole reference instead of the compared part");
 }
 
 console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, const char* description) {
@@ -292,10 +290,9 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
     add_motion_options(*verb, *options);
   else
     add_offset_option(*verb, *options);
-  add_clock_option(
-      *verb, options->fit_time_offset,
-      "Also gives the errors with the fitted offset of the reference's clock (after --t_offset), with "
-      "its standard deviation");
+  add_clock_option(*verb, options->fit_time_offset,
+                   "Also computes the errors with a fitted offset of the reference's clock (after "
+                   "--t_offset), with its standard deviation");
   options->plot.usual_file = metric == trajectory_error::TrajectoryMetric::ate ? "ape.svg" : "rpe.svg";
   add_plot_options(*verb, options->plot);
   add_error_plot_options(*verb, options->error_plot);
@@ -305,7 +302,7 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");
   add_transcript_options(*verb, options->transcript, kAlwaysComplete);
   console::add_json_flag(*verb, options->json);
-  verb->add_flag("--all_errors", options->all_errors, "Lists each error with its stamp in --json as well");
+  verb->add_flag("--all_errors", options->all_errors, "With --json: also lists each error with its stamp");
   verb->footer(
       "docs/metrics.md defines the protocols, docs/evo.md lists evo's flags. Exit code 3 for files that "
       "cannot be compared.");
