@@ -991,11 +991,11 @@ check_meshes() {
   prints 'samples +reconstruction: 7 vertices' "vertices" eval mesh rec.obj truth.obj --samples vertices
   prints 'max +0.01 +0.01' "statistics" eval mesh rec.obj truth.obj --samples vertices
   prints '0.02 +100.00 +100.00 +100.00' "thresholds" eval mesh rec.obj truth.obj --thresholds 0.02,0.005
-  prints 'alignment +file: turned by 0.0000 deg, moved by \(0.0000, 0.0000, -0.0100\) m' "a transform" \
+  prints 'alignment +file: rotated by 0.0000 deg, translated by \(0.0000, 0.0000, -0.0100\) m' "a transform" \
     eval mesh rec.obj truth.obj --align file --transform down.txt
-  prints 'alignment +icp: .*-0.0100\) m \([0-9]+ steps from where it was' "icp" eval mesh rec.obj truth.obj --align icp
+  prints 'alignment +icp: .*-0.0100\) m \([0-9]+ steps from its own pose' "icp" eval mesh rec.obj truth.obj --align icp
   prints 'from the file' "icp from a transform" eval mesh rec.obj truth.obj --align icp --transform down.txt
-  prints 'alignment +trajectory: turned by 0.0000 deg' "trajectories" \
+  prints 'alignment +trajectory: rotated by 0.0000 deg' "trajectories" \
     eval mesh truth.obj truth.obj --align trajectory --trajectories gt.txt gt.txt
   prints 'scale +the reconstruction times 0.001' "millimetres" eval mesh millimetres.obj truth.obj --scale 0.001
   prints '"surfreg_m": 0.0(1|09999)[0-9]*,' "JSON" eval mesh rec.obj truth.obj --json --samples vertices
@@ -1055,7 +1055,7 @@ check_meshes() {
   refused "no samples" 2 'samples 0' -- eval mesh rec.obj truth.obj --samples 0
   refused "a threshold of none" 2 'thresholds: 0 .allowed: above 0' -- eval mesh rec.obj truth.obj --thresholds 0
   fresh_copy
-  refused "a truth that nobody saw" 3 'observed' 'hint:one world' -- \
+  refused "a truth that nobody saw" 3 'observed' 'hint:one frame' -- \
     eval mesh rec.obj truth.obj --cull depth --recording freiburg1_copy --cull-every 1
 }
 

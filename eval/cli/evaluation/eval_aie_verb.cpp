@@ -117,8 +117,8 @@ console::Verb add_eval_aie_verb(CLI::App& eval) {
   console::add_reading_options(*verb, options->reading);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Only pairs of frames count of which all trajectories have both poses. docs/metrics.md defines the\n"
-      "numbers. Exit code 3 for a recording or a trajectory that cannot be used.");
+      "Only pairs of frames count for which all trajectories have both poses. docs/metrics.md defines "
+      "the\nnumbers. Exit code 3 for a recording or a trajectory that cannot be used.");
   return {verb, [options] { return run(*options); }};
 }
 
