@@ -19,7 +19,7 @@ constexpr auto option_choices(Refresh) {
   return choices<Refresh>({{"each", Refresh::each}, {"anchor", Refresh::anchor}});
 }
 
-/// When one of two pixels that land at one place is hidden by the other.
+/// When one of two pixels that project to the same position is occluded by the other.
 enum class ShrinkTest { depth_jump, any_collision };
 constexpr auto option_choices(ShrinkTest) {
   return choices<ShrinkTest>(

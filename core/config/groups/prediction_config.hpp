@@ -1,9 +1,9 @@
-// Options: the first state, and what predicts the next ones.
+// Options: the initial state and the prediction of the following ones.
 #pragma once
 
 namespace fusebench::config {
 
-/// Process noise of the priors. IMU densities come with the recording; here is what comes on top.
+/// Process noise of the priors, in addition to the IMU noise densities of the recording.
 struct MotionConfig {
   double imu_noise_factor = 1.0;
   double speed_mps = 0.2;
@@ -96,7 +96,7 @@ struct InitialisationConfig {
   }
 };
 
-/// The constants of the sensors that are estimated with the motion.
+/// The sensor constants that are estimated together with the motion.
 struct SelfCalibrationConfig {
   bool color_readout = true;
   bool depth_readout = true;

@@ -1,10 +1,9 @@
-// Options: places that are found again by a camera that is lost, the features that they are known by, and
-// what is tracked apart from the map until then.
+// Options: keyframes and features for the relocalisation of a lost camera, and map segments.
 #pragma once
 
 namespace fusebench::config {
 
-/// Which frames are kept to be found again by, and when a found pose is believed.
+/// Selection of keyframes, and acceptance of a relocalised pose.
 struct RelocalisationConfig {
   double keyframe_distance_m = 0.3;
   double keyframe_angle_deg = 20.0;
@@ -79,7 +78,7 @@ struct RelocalisationConfig {
   }
 };
 
-/// Corners by which places are recognised (ORB; Rublee et al. 2011), and which two are the same.
+/// Features for place recognition (ORB; Rublee et al. 2011) and their matching.
 struct PlaceFeaturesConfig {
   int max_count = 800;
   /// Threshold of FAST corners (grey levels): low, since the image of a lost camera is often blurred. The
@@ -109,7 +108,7 @@ struct PlaceFeaturesConfig {
   }
 };
 
-/// When a segment begins, and how often the map is looked for in it.
+/// Start of a map segment, and the rate at which it is matched with the map.
 struct SegmentsConfig {
   double begin_after_s = 0.5;
   int search_every = 5;

@@ -1,11 +1,11 @@
-// Options: the residuals of patches, and when they count.
+// Options: residuals of patches and their weights.
 #pragma once
 
 #include "core/config/groups/option_choices.hpp"
 
 namespace fusebench::config {
 
-/// How the current image is read where a pixel lands.
+/// Sampling of the current image at a warped pixel.
 enum class Sampling { bicubic, whole_pixel };
 constexpr auto option_choices(Sampling) {
   return choices<Sampling>({{"bicubic", Sampling::bicubic}, {"whole_pixel", Sampling::whole_pixel}});

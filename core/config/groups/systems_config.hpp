@@ -1,4 +1,4 @@
-// Options: which system runs, and those of each system that is not the paper's.
+// Options: the system that runs, and the options of each system other than the paper's.
 #pragma once
 
 #include "core/config/groups/option_choices.hpp"
@@ -15,7 +15,7 @@ constexpr auto option_choices(SystemMethod) {
                                 {"elasticfusion", SystemMethod::elasticfusion}});
 }
 
-/// Which system runs.
+/// The system that runs.
 struct SystemConfig {
   SystemMethod method = SystemMethod::filter;
   double replicate_noise = 1e-6;
@@ -39,7 +39,7 @@ constexpr auto option_choices(InfinitamTracker) {
       {{"extended", InfinitamTracker::extended}, {"icp", InfinitamTracker::icp}});
 }
 
-/// What InfiniTAM does with a frame that its quality measure calls a failure.
+/// InfiniTAM's reaction to a frame that its quality measure classifies as a failure.
 enum class InfinitamFailure { ignore, stop_fusion, relocalise };
 constexpr auto option_choices(InfinitamFailure) {
   return choices<InfinitamFailure>({{"ignore", InfinitamFailure::ignore},
@@ -130,8 +130,8 @@ struct OpencvOdometryConfig {
   }
 };
 
-/// BundleFusion: weights of its adjustments, and what its keypoints are chosen by. Defaults are the
-/// program's, but for dense_far_m.
+/// BundleFusion: weights of its adjustments, and selection of keypoints. Defaults are the program's, except
+/// for dense_far_m.
 struct BundlefusionConfig {
   /// Keypoints of a frame, at most, the strongest first.
   static constexpr int max_keypoints = 1024;

@@ -5,13 +5,13 @@
 
 namespace fusebench::config {
 
-/// What predicts the state between frames.
+/// The prediction of the state between frames.
 enum class Prior { imu, constant_velocity };
 constexpr auto option_choices(Prior) {
   return choices<Prior>({{"imu", Prior::imu}, {"constant_velocity", Prior::constant_velocity}});
 }
 
-/// How a patch changes its shape between frames.
+/// The deformation model of a patch between frames.
 enum class Deformation { pixelwise, planar, rigid_square };
 constexpr auto option_choices(Deformation) {
   return choices<Deformation>({{"pixelwise", Deformation::pixelwise},
@@ -19,7 +19,7 @@ constexpr auto option_choices(Deformation) {
                                {"rigid_square", Deformation::rigid_square}});
 }
 
-/// What moves a patch to its place in the current frame.
+/// The tracking of a patch in the current frame.
 enum class PatchMotion { by_pose, own_translation };
 constexpr auto option_choices(PatchMotion) {
   return choices<PatchMotion>(

@@ -33,7 +33,7 @@ class EngineConsole {
 /// "3 failed, 12.5 runs/min, 35 min left"
 [[nodiscard]] std::string rate_text(const engine::EngineState& state);
 
-/// Makes the simulated recordings that the jobs need and that are not there.
+/// Simulates missing recordings of the jobs.
 [[nodiscard]] Result<void> simulate_missing(const std::vector<engine::BatchJob>& jobs, int threads);
 
 }  // namespace fusebench::cli::console

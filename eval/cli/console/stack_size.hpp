@@ -1,4 +1,4 @@
-// Enough stack for the filter's matrices, whatever the limit of the shell.
+// Enough stack for the filter's matrices, independent of the limit of the shell.
 #pragma once
 
 #include <functional>

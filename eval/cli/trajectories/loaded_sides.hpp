@@ -17,7 +17,7 @@ struct Sides {
   [[nodiscard]] bool have_stamps() const { return reference.has_stamps() && estimate.has_stamps(); }
 };
 
-/// How the two files are read; what is not given is recognised.
+/// Reading options of the two files; formats that are not given are recognised.
 struct SideReadings {
   trajectory_files::TrajectoryReading reference = {};
   trajectory_files::TrajectoryReading estimate = {};
@@ -40,7 +40,7 @@ inline constexpr const char* kStampUnitHelp =
                                        const std::filesystem::path& estimate, const SideReadings& readings,
                                        std::vector<std::string>& warnings);
 
-/// The same, with what was noticed printed as warnings.
+/// Reads both and prints the warnings.
 [[nodiscard]] Result<Sides> load_sides(const std::filesystem::path& reference,
                                        const std::filesystem::path& estimate);
 

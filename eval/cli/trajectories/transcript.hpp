@@ -1,4 +1,4 @@
-// What a verb with evo's --silent and --logfile says.
+// The output of a verb with evo's --silent and --logfile.
 #pragma once
 
 #include <filesystem>
@@ -20,12 +20,12 @@ struct TranscriptOptions {
   bool no_warnings = false;  ///< accepted, and of no effect
   std::filesystem::path logfile;
 };
-/// --silent, --logfile, -v (--verbose, --debug), and what evo needs and nothing here does: --no_warnings.
+/// --silent, --logfile, -v (--verbose, --debug), and --no_warnings, which has no effect here.
 void add_transcript_options(CLI::App& verb, TranscriptOptions& options, const char* what_verbose_does);
 inline constexpr const char* kAlwaysComplete =
     "Accepted for compatibility with evo: the output is always complete";
 
-/// Prints lines as they come, and keeps them for the log file.
+/// Prints lines and stores them for the log file.
 class Transcript {
  public:
   explicit Transcript(const TranscriptOptions& options);  ///< --silent hides progress from here on
