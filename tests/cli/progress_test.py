@@ -32,7 +32,10 @@ def read_until(descriptor, pattern):
     text = b""
     end = time.monotonic() + LIMIT_S
     while time.monotonic() < end and not pattern.search(text):
-        part = os.read(descriptor, 4096)
+        try:
+            part = os.read(descriptor, 4096)
+        except OSError:  # a terminal whose program has ended
+            break
         if not part:
             break
         text += part
