@@ -35,7 +35,7 @@ namespace fusebench::cli {
 
 namespace {
 
-/// What is not known, or not there, is no text.
+/// Values that are not given are an empty text.
 using Cell = std::optional<std::string>;
 
 /// A list as rows under named columns; every way of printing it starts from here.

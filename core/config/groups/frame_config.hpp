@@ -3,7 +3,7 @@
 
 namespace fusebench::config {
 
-/// Which depth measurements are trusted, and how far.
+/// Gates and noise of depth measurements.
 struct DepthConfig {
   double min_m = 0.3;
   double max_m = 5.0;

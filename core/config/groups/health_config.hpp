@@ -1,9 +1,9 @@
-// Options: when a frame and its update are trusted.
+// Options: diagnosis of a frame and acceptance of its update.
 #pragma once
 
 namespace fusebench::config {
 
-/// When a frame is judged unhealthy, its update not believed, or the frame kept out of the model.
+/// Limits for the diagnosis of a frame, the acceptance of its update and its fusion.
 struct HealthConfig {
   double dark_grey = 6.0;
   double covered_share = 0.25;

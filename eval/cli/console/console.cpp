@@ -18,7 +18,7 @@ namespace fusebench::cli::console {
 
 namespace {
 
-/// Whether standard output is a pipe that nobody reads any more.
+/// Whether standard output is a pipe without a reader.
 bool reader_has_left() {
   pollfd output{STDOUT_FILENO, POLLOUT, 0};
   return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
@@ -78,7 +78,7 @@ std::string summary_line(const record::RunRecord& record) {
   line += fmt::format("{}/{} frames", record.frames.tracked, record.frames.total);
   if (const std::string segments = record::segments_text(record.frames); !segments.empty())
     line += ", " + segments;
-  // Nobody timed what was imported.
+  // Imported runs have no times.
   if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
     line += fmt::format(", {} undetected failures", silent);

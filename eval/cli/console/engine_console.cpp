@@ -15,7 +15,7 @@ namespace fusebench::cli::console {
 
 namespace {
 
-constexpr std::size_t kMostRows = 50;  // of runs that were there already, told one by one
+constexpr std::size_t kMostRows = 50;  // of finished runs that are listed one by one
 
 std::string ending_of(const engine::BatchOutcome& outcome) {
   if (outcome.skipped) return "skipped: " + outcome.reason;
@@ -35,7 +35,7 @@ engine::EngineControl EngineConsole::control() {
 }
 
 void EngineConsole::tell(std::size_t index, const engine::BatchOutcome& outcome) {
-  if (outcome.resumed && outcome.skipped) return;  // was not asked for
+  if (outcome.resumed && outcome.skipped) return;  // not selected
   ++told_;
   if (outcome.resumed && ++resumed_ > kMostRows) return;
   const bool more = outcome.resumed && resumed_ == kMostRows;

@@ -12,7 +12,7 @@ namespace fusebench::cli::console {
 
 namespace {
 
-constexpr std::size_t kUsualWidth = 100;  // of a terminal that does not tell, as a serial line
+constexpr std::size_t kUsualWidth = 100;  // of a terminal without a size, such as a serial line
 constexpr int kWidestLine = 10000;
 
 std::size_t terminal_width() {

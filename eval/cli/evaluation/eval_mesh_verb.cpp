@@ -42,7 +42,7 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   mesh.colors = mesh_error::error_colors(evaluation.vertex_errors_m, largest_m);
   mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
   std::error_code ignored;
-  // Writing says if the folder is not there afterwards.
+  // Writing reports an error if the folder does not exist afterwards.
   if (options.colored.has_parent_path())
     std::filesystem::create_directories(options.colored.parent_path(), ignored);
   auto file = io::StagedFile::create(options.colored);

@@ -64,7 +64,7 @@ std::string conversion_text(const DoneExport& done) {
                    done.summary.depth.beyond_range, done.summary.depth.measured,
                    done.summary.depth_storage.farthest_m());
   for (const std::string& note : recording.notes) {
-    if (!note.starts_with("ground truth: pseudo")) fmt::format_to(out, "  {}\n", note);  // said above
+    if (!note.starts_with("ground truth: pseudo")) fmt::format_to(out, "  {}\n", note);  // printed above
   }
   fmt::format_to(out, "  next: fusebench inspect {}\n", done.summary.out.string());
   return text;

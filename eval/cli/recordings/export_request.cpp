@@ -26,7 +26,7 @@ Result<recording::Recording> open_for_export(const ExportRequest& request) {
   return run::open_window(*place, *how, *window);
 }
 
-/// A program that is told its file reads any name; this one opens a file by the ending of its name.
+/// .sens files are recognised by their ending.
 Result<void> check_ending(const ExportRequest& request) {
   if (request.format != exports::ExportFormat::sens || request.out.extension() == ".sens") return {};
   return fail(ErrorCode::usage,

@@ -33,7 +33,7 @@ struct InspectVerbOptions {
   bool json = false;
 };
 
-/// What the user said wrongly is an error as in every verb; what the data are is for the inspection.
+/// Errors of the data become findings; errors of usage end the verb.
 bool is_finding(const Error& error) {
   return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
 }
@@ -46,7 +46,7 @@ Result<recording::Recording> open(const InspectVerbOptions& options, const std::
   return run::open_window(folder, *how, *window);
 }
 
-/// How many frames the catalogue says there are.
+/// Number of frames in the catalogue.
 std::optional<std::size_t> published_frames(const std::filesystem::path& folder) {
   const calibration::CatalogueEntry* entry = calibration::catalogue_entry_of_folder(folder);
   if (entry == nullptr || !entry->frames) return std::nullopt;

@@ -42,7 +42,7 @@ run::ImuChoice imu_of(const record::RunRecord& record) {
   return record.recording.imu == "synthetic IMU" ? run::ImuChoice::synthetic : run::ImuChoice::recorded;
 }
 
-/// A record knows the name of its recording, and not its place.
+/// Finds the recording by its name, because a record does not contain its folder.
 tl::unexpected<Error> not_found(const record::RunRecord& record, const fs::path& data, const Error& error) {
   const std::string and_so = data.empty() || error.hint.empty() ? "" : fmt::format("; {}", error.hint);
   return fail(

@@ -125,7 +125,7 @@ Result<run::PreparedRun> prepare_like(const RunOptions& options) {
   return prepared;
 }
 
-/// The record says these. (The parser lists options that exclude several in another order each time.)
+/// Refuses options whose values are in the record. (The parser's own check lists them in varying order.)
 Result<void> check_alone(const CLI::App& verb) {
   if (verb.count("--like") == 0) return {};
   for (const char* const option : {"--variant", "--imu", "--config", "--frames", "--prepare", "--repetition",
@@ -148,7 +148,7 @@ Result<run::PreparedRun> prepare(const RunOptions& options) {
   return run::prepare_run(std::move(*spec));
 }
 
-/// Executes one run and says how it ended.
+/// Executes one run and prints its result.
 Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   io::remove_abandoned(prepared.folder.parent_path());  // what an earlier one that was killed left
   const int replicate = prepared.spec.replicate;
@@ -167,7 +167,7 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
           }};
   auto record = run::execute_run(prepared, control);
   if (!record) return record;
-  // What opening it has not said: what was measured in the recording and found of its IMU.
+  // Prints the notes that opening did not print: measured timing and findings on the IMU.
   const std::vector<std::string> said = record::reading_notes(prepared.recording, prepared.spec.recording);
   for (const std::string& note : record->recording.notes) {
     // The status line has a contradiction.

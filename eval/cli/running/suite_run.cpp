@@ -44,7 +44,7 @@ Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, 
   return run_here(plan.jobs, options.controls, suite.limits, all_threads);
 }
 
-/// On a cluster, a run has one thread unless somebody says how many, and the cluster many runs.
+/// Sets threads and runs at a time: on a cluster one thread per run without --threads.
 Result<void> set_executor(BenchOptions& options) {
   if (options.executor == "local") {
     if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())

@@ -92,7 +92,7 @@ Result<void> check_reference(const BundleOptions& options, const Bundle& bundle)
   return {};
 }
 
-/// Associated with the reference where that is asked for, aligned and projected.
+/// Associates with the reference if requested, aligns and projects.
 Result<Trajectory> brought_to(const Trajectory& reference, const Trajectory& poses,
                               const BundleOptions& options, bool has_stamps) {
   const auto alignment = aligned_by(options.alignment, {});

@@ -22,7 +22,7 @@ namespace fusebench::cli::trajectories {
 /// What evo calls a verb of `eval`, if that is another name; else empty.
 [[nodiscard]] std::string_view name_in_evo(std::string_view verb);
 
-/// Takes a format that stands before the files, as in `evo_ape tum ref.txt est.txt`, off the list. Error
+/// Removes a format before the files, as in `evo_ape tum ref.txt est.txt`, from the list. Error
 /// usage: it is given twice.
 [[nodiscard]] Result<void> take_leading_format(std::vector<std::string>& files, std::string& format);
 

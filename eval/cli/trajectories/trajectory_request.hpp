@@ -81,7 +81,7 @@ inline constexpr std::array<std::pair<const char*, metric_reports::PlotAbscissa>
      {"index", metric_reports::PlotAbscissa::index},
      {"distances", metric_reports::PlotAbscissa::distances}}};
 
-/// Takes a format that stands before the files, of which two are left. Error usage if they are not, and those
+/// Removes a format before the files; two files must remain. Errors: usage for another number, and those
 /// of take_leading_format().
 [[nodiscard]] Result<void> take_two_files(TrajectoryOptions& options);
 

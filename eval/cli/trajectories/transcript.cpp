@@ -47,7 +47,7 @@ Result<void> Transcript::finish() const {
                 fmt::format("--logfile {}: a symbolic link, whose target would be changed",
                             options_.logfile.string()),
                 "pass the file itself: the output is appended to it");
-  std::error_code ignored;  // opening says if it is not there
+  std::error_code ignored;  // opening reports the error
   if (options_.logfile.has_parent_path())
     std::filesystem::create_directories(options_.logfile.parent_path(), ignored);
   std::ofstream stream(options_.logfile, std::ios::app | std::ios::binary);
