@@ -46,7 +46,8 @@ struct CompensationConfig {
   int max_updates_again = 1;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number("max_updates_again", self.max_updates_again, 0, 10, "at most so many more updates of a frame");
+    v.number("max_updates_again", self.max_updates_again, 0, 10,
+             "largest number of further updates of a frame");
   }
 };
 

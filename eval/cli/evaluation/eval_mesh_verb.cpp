@@ -64,7 +64,7 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
                     evaluation.truth.extent_m.norm()));
   }
   for (const auto& [shape, what] : {std::pair(&evaluation.reconstruction, "the reconstruction"),
-                                    std::pair(&evaluation.truth, "the truth")}) {
+                                    std::pair(&evaluation.truth, "the ground truth")}) {
     if (shape->unused_vertices == 0) continue;
     console::print_progress(
         fmt::format("warning: {} of {} vertices of {} belong to no triangle: its size does not include them; "

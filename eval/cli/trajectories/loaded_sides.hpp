@@ -27,9 +27,8 @@ struct SideReadings {
 /// and of the estimate. Nothing if the text is empty. Error usage for another name or more than two.
 [[nodiscard]] Result<void> set_stamp_units(const std::string& units, SideReadings& readings);
 inline constexpr const char* kStampUnitHelp =
-    "Unit of stamps: s, ms, us or ns, where names in the file do not say it. Files with decimals that the "
-    "unit "
-    "does not have stay in seconds; REF,EST gives it for either side. Default: by their size if since 1970";
+    "Unit of stamps: s, ms, us or ns, unless column names in the file contain it. Files with more decimals "
+    "than the unit has stay in seconds; REF,EST sets each side. Default: by their size if since 1970";
 
 /// For reports.
 [[nodiscard]] metric_reports::ComparedFiles compared_files(const std::string& reference,
