@@ -119,7 +119,7 @@ Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit) {
   if (fits && digit(kept) >= 5) fits = value++ < kMaxTime_ns;
   if (!fits) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("time '{}' in {} is beyond 146 years (half of what 64-bit nanoseconds hold)",
+                fmt::format("time '{}' in {} is beyond 146 years (half of the range of 64-bit nanoseconds)",
                             printable(text), to_string(unit)),
                 fmt::format("times are {} here; is the file in another unit?", to_string(unit)));
   }

@@ -245,7 +245,7 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
     if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostLeverArm_m)
-      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostLeverArm_m));
+      section.complain(fmt::format("the IMU is more than {} m from the colour camera", kMostLeverArm_m));
   }
   imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);

@@ -51,7 +51,7 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
   const std::size_t count = recording.frames.size();
   if (count == 0)
     return fail(ErrorCode::usage, fmt::format("'{}' has no frames to export", recording.name),
-                "`fusebench inspect` says what is in it");
+                "`fusebench inspect` lists its contents");
   if (count > row.most_frames)
     return fail(ErrorCode::usage,
                 fmt::format("'{}' has {} frames (allowed in {}: 1 .. {}, which {} takes)", recording.name,
@@ -63,7 +63,7 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
                 fmt::format("'{}': frames {} and {} have stamps {} and {} (they must rise)", recording.name,
                             k - 1, k, trajectory::stamp_text(recording.frames[k - 1].timestamp_ns),
                             trajectory::stamp_text(recording.frames[k].timestamp_ns)),
-                "`fusebench inspect` says more; leave these frames out with --frames A:B");
+                "`fusebench inspect` shows details; leave these frames out with --frames A:B");
   }
   return {};
 }

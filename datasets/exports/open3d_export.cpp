@@ -53,7 +53,7 @@ Result<WrittenExport> write_open3d(const recording::Recording& recording, const 
   result.notes = {
       "Open3D: in the folder, run_system.py --config config.json --make --register --refine --integrate",
       "frames have numbers and no time: frame_times.txt has the stamp of each",
-      "its own default leaves out depth beyond 3 m; more is said in config.json"};
+      "its own default leaves out depth beyond 3 m; config.json contains further notes"};
   if (!recording.imu.empty()) result.notes.push_back("inertial samples are not written");
   return result;
 }

@@ -49,11 +49,10 @@ void check_registration(const recording::Recording& recording, const Workers& wo
           "correct the depth camera first (depth-misregistered): it may be its focal length that is wrong";
   }
   out.add("depth-misregistered", Severity::warning,
-          one_camera
-              ? fmt::format("edges of depth lie {:.0f} px from those of colour; {} would bring them there",
-                            fit->moved_px, proposal(fit->fitted))
-              : "edges of depth do not lie on edges of colour, and no place of the depth camera was found "
-                "that would bring all of them there",
+          one_camera ? fmt::format("edges of depth are {:.0f} px from those of colour; {} would align them",
+                                   fit->moved_px, proposal(fit->fitted))
+                     : "edges of depth do not coincide with edges of colour, and no pose of the depth camera "
+                       "was found that aligns all of them",
           "check [depth] and T_color_depth in calibration.toml, and that depth is registered; `fusebench "
           "calibrate RECORDING --depth-camera` estimates the depth camera");
 }

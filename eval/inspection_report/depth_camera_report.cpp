@@ -44,7 +44,7 @@ Result<RegistrationFit> estimate_depth_camera(const recording::Recording& record
   return fail(
       ErrorCode::run_failed,
       fmt::format("recording '{}' has too few edges of depth to estimate a depth camera", recording.name),
-      "record things that stand apart from what is behind them, near and far, all over the image");
+      "record objects in front of a more distant background, near and far, in all parts of the image");
 }
 
 Result<void> check_determined(const RegistrationFit& fit, const recording::Recording& recording) {
@@ -56,8 +56,8 @@ Result<void> check_determined(const RegistrationFit& fit, const recording::Recor
                 "up to {:g} of the movement)",
                 fit.moved_px, fit.spread_px, RegistrationFit::kMaxSpread)
           : fmt::format(
-                "edges move {:.1f} px and lie better in {:.0f} % of the frames only (allowed: {:.0f} % "
-                "or more)",
+                "edges move {:.1f} px and fit better in only {:.0f} % of the frames (required: {:.0f} % or "
+                "more)",
                 fit.moved_px, 100 * fit.better_share, 100 * RegistrationFit::kMinBetterShare);
   return fail(
       ErrorCode::run_failed,

@@ -1,5 +1,4 @@
-// What another system made of a recording, whether it was imported or run as a program, as the output of a
-// run.
+// The output of another system, imported or run as a program, in the form of a run's output.
 #pragma once
 
 #include "core/base/types.hpp"

@@ -1,4 +1,4 @@
-// The frames that a system has seen, once more: after it has changed their poses.
+// Replays the processed frames of a run after the system has revised their poses.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace fusebench::run {
 
-/// What a system of the run replays frames by (base/replay.hpp).
+/// The replay interface of a run (base/replay.hpp).
 class FrameReplay {
  public:
   /// The references must outlive it.
   FrameReplay(const PreparedRun& run, const RunControl& control) : run_(run), control_(control) {}
 
-  /// So many frames were given to the system.
+  /// Sets the number of frames that the system has processed.
   void set_seen(std::size_t frames) { seen_ = frames; }
 
-  /// The frames that were seen, in order. Errors: run_failed (a stop), those of the recording and the
+  /// Visits the processed frames in order. Errors: run_failed (a stop), those of the recording and the
   /// visitor.
   [[nodiscard]] Result<void> visit(const FrameVisitor& visitor) const;
 

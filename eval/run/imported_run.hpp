@@ -1,4 +1,4 @@
-// What another system made of a recording, as a run beside ours.
+// Evaluates the output of another system as a run.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,12 @@ namespace fusebench::run {
 struct ImportSpec {
   std::string name;                       ///< of the other system: the run's variant
   external::SystemTrajectory trajectory;  ///< its poses of the colour camera
-  std::filesystem::path mesh;             ///< PLY or OBJ, in the world of these poses; may be empty
+  std::filesystem::path mesh;             ///< PLY or OBJ, in the frame of these poses; may be empty
   double mesh_unit_m = 1;
   std::filesystem::path recording;
   datasets::OpenOptions open;
   std::optional<FrameWindow> frames;
-  std::string imu = "not said";  ///< "none", "recorded" or "synthetic IMU": what it used
+  std::string imu = "not said";  ///< the IMU that it used: "none", "recorded" or "synthetic IMU"
   int threads = 1;
   std::filesystem::path out;
 };
@@ -32,12 +32,12 @@ struct ImportedRun {
   std::vector<std::string> warnings;  ///< of reading the trajectory
 };
 
-/// Evaluates it as a run of ours, and writes record.json, trajectory.tum, truth.tum, mesh.ply and log.txt. A
-/// pose belongs to the frame whose stamp is nearest, within 0.02 s; a frame without one counts as lost. Poses
-/// without stamps (KITTI) must be as many as the frames.
+/// Evaluates it as a run of this program, and writes record.json, trajectory.tum, truth.tum, mesh.ply and
+/// log.txt. A pose belongs to the frame whose stamp is nearest, within 0.02 s; a frame without one counts as
+/// lost. Poses without stamps (KITTI) must be as many as the frames.
 ///
-/// Errors: usage for a name that is a variant of ours or no name of a folder, or under which other files are
-/// imported already for the same frames, IMU and kind of poses; those of open_recording,
+/// Errors: usage for a name that is a variant of this program or not the name of a folder, or under
+/// which other files are imported for the same frames, IMU and kind of poses; those of open_recording,
 /// external::read_system_trajectory() and read_foreign_mesh(); io.
 [[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
 

@@ -1,4 +1,4 @@
-// What a run says of loops.
+// Loop closures of a run: files, log line and errors.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@ struct LoopResults {
   std::string candidates;                                       ///< loops.csv
   std::string places;                                           ///< places.csv
   std::string log;                                              ///< a line: how many there were
-  std::optional<record::Outcome<loop_error::LoopError>> error;  ///< where there is truth
+  std::optional<record::Outcome<loop_error::LoopError>> error;  ///< if there is ground truth
 };
 
-/// truth: of the camera, at the stamps of the frames; empty if there is none. closure: of a system after its
-/// last frame; nothing of one that does not look for loops.
+/// truth: ground truth of the camera at the stamps of the frames, or empty. closure: the loop closure of a
+/// system after its last frame; null if the system detects no loops.
 [[nodiscard]] LoopResults loop_results(const loops::LoopClosure* closure, const Trajectory& truth,
                                        const PinholeCamera& camera, const config::DepthConfig& depth,
                                        const config::LoopsConfig& loops);

@@ -1,4 +1,4 @@
-// One run of an external program, as a row beside those of the systems of this program.
+// One run of an external program.
 #pragma once
 
 #include "core/base/error.hpp"
@@ -8,9 +8,9 @@
 
 namespace fusebench::run {
 
-/// Exports the recording, runs the program, and evaluates what it left as an imported run is evaluated; the
+/// Exports the recording, runs the program, and evaluates its output as an imported run; the
 /// folder gets record.json, trajectory.tum, truth.tum, mesh.ply and log.txt. A
-/// program that dies, hangs or leaves what cannot be used is a record with status failed and its reason.
+/// program that crashes, hangs or writes unusable output gives a record with status failed and the reason.
 /// Errors: as execute_run().
 [[nodiscard]] Result<record::RunRecord> execute_program_run(const PreparedRun& run,
                                                             const RunControl& control);

@@ -1,4 +1,4 @@
-// The end of a run of a system that revises its poses.
+// Collects the revised poses of a system at the end of a run.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace fusebench::run {
 
-/// The revised poses of the system; nothing if it has none, or the run did not come to its end. What
-/// goes wrong ends the run and is in the progress. Errors: run_failed (a stop).
+/// The revised poses of the system; nullopt if it has none or the run ended early. A failure ends the
+/// run and is stored in the progress. Errors: run_failed (a stop).
 [[nodiscard]] Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
                                                               const RunControl& control);
 
-/// What metrics need of the revised poses, with the mesh of the online output.
+/// The input of the metrics: the revised poses with the mesh of the online output.
 [[nodiscard]] RunOutput final_output(const Trajectory& revised, const RunOutput& online);
 
 }  // namespace fusebench::run

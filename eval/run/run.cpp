@@ -101,7 +101,7 @@ void log_sensors(const record::RunRecord& record, RunProgress& progress) {
 void log_silent_failures(const record::RunRecord& record, RunProgress& progress) {
   if (record.metrics.silent_frames().value_or(0) == 0) return;
   const record::RecordedSilentFailures& silent = *record.metrics.silent.value;
-  progress.log += fmt::format("{} of {} claimed poses are wrong (undetected failures), from frame {} on\n",
+  progress.log += fmt::format("{} of {} poses are wrong (undetected failures), from frame {} on\n",
                               silent.failures.silent, silent.failures.judged,
                               record.recording.first_frame + silent.first_frame.value_or(0));
 }

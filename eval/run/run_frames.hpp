@@ -1,4 +1,4 @@
-// The frames of a run through its system, and what they leave behind for its files and metrics.
+// Processes the frames of a run and collects their results for files and metrics.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace fusebench::run {
 
-/// What the frames left behind; grows frame by frame.
+/// Results of the frames so far.
 struct RunProgress {
   record::RunStatus status = record::RunStatus::ok;
   std::string reason;
@@ -34,14 +34,14 @@ struct RunProgress {
   std::string log;
   double decode_ms = 0;
   std::array<double, health::kStageNames.size()> stage_ms{};
-  profile::RunProfile profile;  ///< stays without frames unless it is asked for
+  profile::RunProfile profile;  ///< empty unless requested
 
   void end(record::RunStatus how, std::string why);
 };
 
 /// Processes all frames; the replay, which the system was made with, follows. intensity.bin goes into
-/// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; whatever else
-/// goes wrong ends the run and is in the progress.
+/// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; any other
+/// failure ends the run and is stored in the progress.
 [[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                                  FrameReplay& replay, const io::StagedFolder& folder,
                                                  const RunControl& control);

@@ -168,7 +168,7 @@ std::string markdown(const PaperTable& table, std::size_t width) {
 
 std::string latex(const PaperTable& table, const LatexLayout& layout) {
   LatexTable latex;
-  latex.caption = fmt::format("{}: published numbers, and what was run here.", table.of.title);
+  latex.caption = fmt::format("{}: published numbers and results of this program.", table.of.title);
   latex.label = table.of.name;
   std::ranges::replace(latex.label, '_', '-');
   latex.heading = heading_of(table);
@@ -249,8 +249,8 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
   for (const std::string& name : synthetic) add_alone("IMU made from the truth", name, true);
   if (!synthetic.empty()) {
     table.notes.emplace_back(
-        "IMU made from the truth: such runs know the answer, and compare variants with each other only. They "
-        "stand in rows of their own, and beside no published number.");
+        "IMU made from the ground truth: these runs use information of the reference, so they compare "
+        "variants with each other only. They have rows of their own without published numbers.");
   }
   return table;
 }

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
@@ -35,14 +38,17 @@ Result<recording::Recording> open(const PrepareVerbOptions& options) {
 }
 
 Result<int> run(const PrepareVerbOptions& options) {
+  console::Progress progress("opening " + options.recording);
   const auto recording = open(options);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
+  progress.say(fmt::format("measuring read-outs and delay of {} frames", recording->frames.size()));
   const Workers workers(options.threads);
   const auto prepared = preparation::prepare(*recording, workers, nullptr);
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
+  progress.say("checking the IMU");
   const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
@@ -53,10 +59,10 @@ Result<int> run(const PrepareVerbOptions& options) {
 
 console::Verb add_prepare_verb(CLI::App& app) {
   auto options = std::make_shared<PrepareVerbOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "prepare",
-      "Measures from the images what the calibration leaves open (read-outs of colour and depth, delay of "
-      "depth), and checks the IMU");
+  CLI::App* verb =
+      app.add_subcommand("prepare",
+                         "Measures from the images the timing that the calibration does not contain "
+                         "(read-outs of colour and depth, delay of depth), and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);

@@ -8,6 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/results/recorded_frames.hpp"
 #include "eval/cli/results/result_verbs.hpp"
@@ -31,11 +32,13 @@ struct ReportOptions {
 };
 
 Result<int> report(const ReportOptions& options) {
+  console::Progress progress(fmt::format("reading {}", options.runs.string()));
   const auto runs = run_files::find_runs(options.runs);
   if (!runs) return tl::unexpected(runs.error());
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
+  progress.say(fmt::format("report of {} runs", runs->size()));
   report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
@@ -52,6 +55,7 @@ Result<int> report(const ReportOptions& options) {
   if (options.figures.empty()) return 0;
   const auto format = page::parse_figure_format(options.figure_format);
   if (!format) return tl::unexpected(format.error());
+  progress.say("drawing figures");
   const auto figures = page::write_figures(page.page, options.figures, *format);
   if (!figures) return tl::unexpected(figures.error());
   console::print_progress(fmt::format("{}: {} figures", options.figures.string(), *figures));
@@ -69,12 +73,13 @@ console::Verb add_report_verb(CLI::App& app) {
   console::add_data_option(*verb, options->data);
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
       ->type_name("TEXT");
-  verb->add_option(
-          "--figures", options->figures,
-          "Writes every chart as a file for papers as well, and beside it the script that draws it (gnuplot)")
-      ->type_name("DIR");
+  auto* figures =
+      verb->add_option("--figures", options->figures,
+                       "Also writes every chart as a file for papers, with the gnuplot script that draws it")
+          ->type_name("DIR");
   verb->add_option("--figure-format", options->figure_format, "svg or pdf")
       ->check(CLI::IsMember({"svg", "pdf"}))
+      ->needs(figures)
       ->capture_default_str();
   return {verb, [options] { return report(*options); }};
 }

@@ -78,7 +78,7 @@ TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {
   EXPECT_FALSE(nlohmann::json::parse(depth_camera_json(fit, recording)).at("determined").get<bool>());
   fit.spread_px = 3;
   fit.better_share = 0.67;
-  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("in 67 % of the frames only"));
+  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("in only 67 % of the frames"));
   EXPECT_THAT(depth_camera_text(fit, recording), HasSubstr("not determined"));
 }
 
