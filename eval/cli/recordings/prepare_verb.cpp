@@ -35,15 +35,16 @@ Result<recording::Recording> open(const PrepareVerbOptions& options) {
 }
 
 Result<int> run(const PrepareVerbOptions& options) {
-  const auto recording = open(options);
+  auto recording = open(options);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
   const Workers workers(options.threads);
+  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
+  if (sensors.depth_camera) preparation::use_depth_camera(*recording, *sensors.depth_camera);
   const auto prepared = preparation::prepare(*recording, workers, nullptr);
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
-  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
   return 0;
@@ -56,7 +57,7 @@ console::Verb add_prepare_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "prepare",
       "Measures from the images what the calibration leaves open (read-outs of colour and depth, delay of "
-      "depth), and checks the IMU");
+      "depth), the depth camera, and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);
