@@ -98,6 +98,15 @@ class EdgeScore {
     return steps;
   }
 
+  [[nodiscard]] double mean_depth_m() const {
+    double sum = 0, count = 0;
+    for (const FrameEdges* frame : frames_) {
+      for (const DepthEdge& edge : frame->edges) sum += edge.depth_m;
+      count += static_cast<double>(frame->edges.size());
+    }
+    return sum / count;
+  }
+
   /// rms over the edges of how far the camera's numbers move them, and of its standard deviation.
   [[nodiscard]] std::pair<double, double> movement_px(const Numbers& p, const Square& covariance) const {
     double moved = 0, variance = 0, count = 0;
@@ -273,8 +282,14 @@ Numbers unmoved(Numbers p) {
   return p;
 }
 
-DepthCameraSigma sigma_of(const Estimate& estimate, const RegistrationFit& fit, const PinholeCamera& color) {
-  const Numbers sigma = estimate.covariance.diagonal().cwiseSqrt();
+/// With what the scatter of frames does not show, as a displacement at the border, everywhere, and at the
+/// mean depth of the edges.
+DepthCameraSigma sigma_of(const Estimate& estimate, double mean_depth_m, const RegistrationFit& fit,
+                          const PinholeCamera& color) {
+  constexpr double kCommon_px = RegistrationFit::kCommonSigma_px;
+  Numbers common = Numbers::Constant(kCommon_px);
+  common.segment<2>(3) *= mean_depth_m;
+  const Numbers sigma = (estimate.covariance.diagonal() + common.cwiseAbs2()).cwiseSqrt();
   const double focal_length_px = fit.fitted.pinhole.fx_px;
   DepthCameraSigma result;
   result.focal_length_px = focal_length_px / fit.model.scale * sigma[0] / (color.width_px / 2.0);
@@ -320,7 +335,7 @@ std::optional<RegistrationFit> fit_registration(const recording::Recording& reco
   std::tie(fit.moved_px, fit.sigma_px) = score.movement_px(moved, estimate.covariance);
   fit.as_read = depth_camera_as_read(recording);
   fit.fitted = fitted_depth_camera(fit.model, camera, fit.as_read);
-  fit.fitted_sigma = sigma_of(estimate, fit, camera);
+  fit.fitted_sigma = sigma_of(estimate, score.mean_depth_m(), fit, camera);
   return fit;
 }
 

@@ -42,7 +42,7 @@ struct RegistrationModel {
   [[nodiscard]] Vector2d move(const DepthEdge& edge, const PinholeCamera& camera) const;
 };
 
-/// Standard deviations of a fitted depth camera.
+/// Standard deviations of a fitted depth camera, with RegistrationFit::kCommonSigma_px.
 struct DepthCameraSigma {
   double focal_length_px = 0;
   Vector2d centre_px{0, 0};

@@ -93,11 +93,9 @@ TEST(RegistrationFit, FindsTheDepthCamera) {
   EXPECT_GT(fit->strength_moved, 2 * fit->strength_as_read);
   const calibration::DepthCamera& fitted = fit->fitted;
   EXPECT_NEAR(fitted.pinhole.fx_px, 265, 3);
-  EXPECT_NEAR(fitted.T_color_depth.translation.x(), -0.03, 0.01);
-  EXPECT_NEAR(fitted.T_color_depth.translation.y(), 0, 0.01);
   const DepthCameraSigma& sigma = fit->fitted_sigma;
-  EXPECT_LT(std::abs(fitted.pinhole.fx_px - 265), 4 * std::max(sigma.focal_length_px, 0.25));
-  EXPECT_LT(std::abs(fitted.T_color_depth.translation.x() + 0.03), 4 * std::max(sigma.place_m.x(), 1e-3));
+  EXPECT_LT(std::abs(fitted.pinhole.fx_px - 265), 3 * sigma.focal_length_px);
+  EXPECT_LT(std::abs(fitted.T_color_depth.translation.x() + 0.03), 3 * sigma.place_m.x());
 }
 
 /// Registered depth that is taken `delay_s` after colour.
@@ -128,7 +126,8 @@ TEST(RegistrationFit, LeavesRegisteredDepthAndDoesNotDependOnThreads) {
   const auto one = fit_registration(recording, Workers(1));
   const auto two = fit_registration(recording, Workers(2));
   ASSERT_TRUE(one && two);
-  EXPECT_LT(one->moved_px, 1);
+  EXPECT_LT(one->moved_px, 2);
+  EXPECT_FALSE(one->is_significant());
   EXPECT_EQ(one->moved_px, two->moved_px);
   EXPECT_EQ(one->model.baseline_m, two->model.baseline_m);
 }
