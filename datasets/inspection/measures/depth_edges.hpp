@@ -45,7 +45,7 @@ struct EdgeStrength {
 inline constexpr std::size_t kStrengthLevels = 3;  // each half the size of the one before
 
 struct FrameEdges {
-  std::vector<DepthEdge> edges;  ///< at most 1500, spread over the image
+  std::vector<DepthEdge> edges;  ///< at most 750, spread over the image
   std::array<EdgeStrength, kStrengthLevels> strength;
   Vector2d motion_px = Vector2d::Zero();  ///< of the image, to the next frame
 };

@@ -262,7 +262,7 @@ struct Estimate {
 Estimate refine(const EdgeScore& score, Numbers p, const Workers& workers) {
   constexpr int kMostSteps = 40;
   constexpr double kLongest_px = 2;
-  constexpr double kConverged_px = 0.01;
+  constexpr double kConverged_px = 0.05;
   const Numbers prior_information = score.prior_sigma().cwiseAbs2().cwiseInverse();
   const Square prior = prior_information.asDiagonal();
   for (int i = 0;; ++i) {
