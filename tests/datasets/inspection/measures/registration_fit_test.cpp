@@ -116,7 +116,7 @@ recording::Recording delayed(double delay_s) {
 TEST(RegistrationFit, TellsADelayOfDepthFromAnotherCamera) {
   const auto fit = fit_registration(delayed(0.02), Workers(2));
   ASSERT_TRUE(fit);
-  EXPECT_NEAR(std::abs(fit->delay_frames), 0.02 * 30, 0.15);
+  EXPECT_NEAR(std::abs(fit->delay_frames), 0.02 * 30, 0.25);
   EXPECT_FALSE(fit->is_significant()) << fit->moved_px;
 }
 
