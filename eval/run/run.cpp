@@ -107,7 +107,8 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 }
 
 /// Inertial samples that results would be invalid with are refused; of other contradictions there are
-/// warnings. A large bias of the gyroscope, and a large offset of the IMU's clock, are taken out.
+/// warnings. A depth camera that contradicts the calibration is used. A large bias of the gyroscope, and a
+/// large offset of the IMU's clock, are taken out.
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
@@ -115,6 +116,7 @@ Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
     return tl::unexpected(*std::move(refused));
   for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
+  if (checked.depth_camera) preparation::use_depth_camera(run.recording, *checked.depth_camera);
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
   if (checked.imu_time_offset_s) preparation::take_out_time_offset(run.recording, *checked.imu_time_offset_s);
   return {};

@@ -39,17 +39,18 @@ Result<recording::Recording> open(const PrepareVerbOptions& options) {
 
 Result<int> run(const PrepareVerbOptions& options) {
   console::Progress progress("opening " + options.recording);
-  const auto recording = open(options);
+  auto recording = open(options);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
-  progress.say(fmt::format("measuring read-outs and delay of {} frames", recording->frames.size()));
   const Workers workers(options.threads);
+  progress.say("measuring the depth camera, checking the IMU");
+  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
+  if (sensors.depth_camera) preparation::use_depth_camera(*recording, *sensors.depth_camera);
+  progress.say(fmt::format("measuring read-outs and delay of {} frames", recording->frames.size()));
   const auto prepared = preparation::prepare(*recording, workers, nullptr);
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
-  progress.say("checking the IMU");
-  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
   return 0;
@@ -59,10 +60,10 @@ Result<int> run(const PrepareVerbOptions& options) {
 
 console::Verb add_prepare_verb(CLI::App& app) {
   auto options = std::make_shared<PrepareVerbOptions>();
-  CLI::App* verb =
-      app.add_subcommand("prepare",
-                         "Measures from the images the timing that the calibration does not contain "
-                         "(read-outs of colour and depth, delay of depth), and checks the IMU");
+  CLI::App* verb = app.add_subcommand(
+      "prepare",
+      "Measures from the images the timing that the calibration does not contain "
+      "(read-outs of colour and depth, delay of depth) and the depth camera, and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);
