@@ -134,6 +134,8 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
       compared ? inspected.imu_alignment : inspection::align_imu_with_images(recording, workers);
   if (alignment && alignment->time_offset_sigma_s < kKnownOffset_s)
     result.imu_time_offset_s = alignment->time_offset_s;
+  if (std::abs(result.imu_time_offset_s.value_or(0)) >= kLeastTimeOffset_s)  // a run removes it
+    std::erase_if(result.findings, [](const Finding& f) { return f.code == "imu-time-offset"; });
   return result;
 }
 

@@ -107,15 +107,19 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 }
 
 /// Inertial samples that results would be invalid with are refused; of other contradictions there are
-/// warnings. A depth camera that contradicts the calibration is used. A large bias of the gyroscope, and a
-/// large offset of the IMU's clock, are taken out.
+/// warnings. A measured depth camera that contradicts the calibration is used. A large bias of the gyroscope
+/// and a large offset of the IMU's clock are removed from the samples. A recording that is too short for
+/// these measurements is checked for a wrong unit or wrong axes of its IMU only.
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
-  if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
+  const bool is_measured = preparation::is_long_enough(run.recording);
+  const bool has_own_imu = run.recording.imu_source == recording::ImuSource::recorded;
+  if (!run.spec.prepare || (!is_measured && !has_own_imu)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
   if (auto refused = preparation::refusal(checked, run.recording.name))
     return tl::unexpected(*std::move(refused));
   for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
+  if (!is_measured) return {};
   if (checked.depth_camera) preparation::use_depth_camera(run.recording, *checked.depth_camera);
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
   if (checked.imu_time_offset_s) preparation::take_out_time_offset(run.recording, *checked.imu_time_offset_s);
