@@ -69,10 +69,7 @@ Result<Camera> read_camera(const std::filesystem::path& file) {
 }
 
 bool same(const Camera& a, const Camera& b) {
-  const PinholeCamera& p = a.camera.pinhole;
-  const PinholeCamera& q = b.camera.pinhole;
-  return p.width_px == q.width_px && p.height_px == q.height_px && p.fx_px == q.fx_px && p.fy_px == q.fy_px &&
-         p.cx_px == q.cx_px && p.cy_px == q.cy_px &&
+  return a.camera.pinhole == b.camera.pinhole &&
          pose_minus(a.T_body_camera, b.T_body_camera).norm() < kSameTransform;
 }
 
