@@ -284,4 +284,12 @@ Result<void> TextTable::numbers(std::size_t first_column, std::span<double> valu
   return {};
 }
 
+void TextTable::warn_of_more_columns(std::vector<std::string>& warnings,
+                                     std::optional<std::size_t> used) const {
+  const std::size_t first = used.value_or(columns_.size());
+  if (size() > first)
+    warnings.push_back(fmt::format("{}:{}: {} columns after the first {} are not used", file_.string(), line_,
+                                   size() - first, first));
+}
+
 }  // namespace fusebench::io

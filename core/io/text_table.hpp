@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,6 +63,10 @@ class TextTable {
   [[nodiscard]] Result<double> number(std::size_t column) const;
   /// Fills values from as many neighbouring columns.
   [[nodiscard]] Result<void> numbers(std::size_t first_column, std::span<double> values) const;
+
+  /// Adds a warning, "file:line: 3 columns after the first 8 are not used", if the current row has more than
+  /// `used` columns; without `used`, more than the named ones.
+  void warn_of_more_columns(std::vector<std::string>& warnings, std::optional<std::size_t> used = {}) const;
 
   /// An error about the current row: "file:line: what", where `what` may quote the row (see printable.hpp).
   [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;

@@ -107,16 +107,13 @@ Result<TrajectoryRows> read_pose_rows(const std::filesystem::path& file, const P
   io::TimeOrderCheck clock(order);
   TrajectoryRows rows;
   LostRows lost;
-  std::size_t unexplained = 0;
-  int first_line = 0;
+  bool has_rows = false;
   while (true) {
     const Result<bool> got = table->next();
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;
-    if (first_line == 0) {
-      first_line = table->line();
-      unexplained = table->size() - std::min(table->size(), layout.explained);
-    }
+    if (!has_rows) table->warn_of_more_columns(warnings, layout.explained);
+    has_rows = true;
     const Result<std::int64_t> time_ns = stamp_ns(*table, layout);
     if (!time_ns) return tl::unexpected(time_ns.error());
     const auto v = pose_numbers(*table, layout.columns);
@@ -134,12 +131,9 @@ Result<TrajectoryRows> read_pose_rows(const std::filesystem::path& file, const P
         !taken)
       return tl::unexpected(taken.error());
   }
-  if (first_line == 0)
+  if (!has_rows)
     return fail(ErrorCode::data_corrupt,
                 fmt::format("{}: has no rows (expected {})", file.string(), layout.names));
-  if (unexplained > 0)
-    warnings.push_back(fmt::format("{}:{}: {} columns after the first {} are not used", file.string(),
-                                   first_line, unexplained, layout.explained));
   if (auto checked = check_rows(file, rows, lost, warnings); !checked) return tl::unexpected(checked.error());
   return rows;
 }

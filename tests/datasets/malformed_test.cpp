@@ -78,7 +78,8 @@ Reading read_images(const fs::path& folder) {
 }
 
 Reading read_euroc_images(const fs::path& folder) {
-  return print_rows(read_image_list(folder / "data.csv", folder / "color", TimeUnit::nanoseconds),
+  std::vector<std::string> warnings;
+  return print_rows(read_image_list(folder / "data.csv", folder / "color", TimeUnit::nanoseconds, warnings),
                     print_image);
 }
 
@@ -113,12 +114,13 @@ Reading read_timestamps(const fs::path& folder) {
 
 Reading read_associations(const fs::path& folder) {
   std::string text;
-  const auto read = for_each_associated_row(folder / "associated.txt",
-                                            [&](const TextTable&, const AssociatedRow& row) -> Result<void> {
-                                              text += row.color_stamp + " " + row.color_file.string() + " " +
-                                                      row.depth_stamp + " " + row.depth_file.string() + "\n";
-                                              return {};
-                                            });
+  const auto use = [&](const TextTable&, const AssociatedRow& row) -> Result<void> {
+    text += row.color_stamp + " " + row.color_file.string() + " " + row.depth_stamp + " " +
+            row.depth_file.string() + "\n";
+    return {};
+  };
+  std::vector<std::string> warnings;
+  const auto read = for_each_associated_row(folder / "associated.txt", use, warnings);
   if (!read) return tl::unexpected(read.error());
   return text;
 }
