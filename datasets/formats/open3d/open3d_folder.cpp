@@ -57,19 +57,20 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   return calibration;
 }
 
-/// The value of `key`, from least to most; nothing if it is not there.
-Result<std::optional<double>> number_within(const nlohmann::json& document, const std::string& key,
-                                            double least, double most, const fs::path& file) {
+/// The value of `key`; nothing if it is not there.
+Result<std::optional<double>> number_of(const nlohmann::json& document, const std::string& key,
+                                        const fs::path& file) {
   if (!document.contains(key)) return std::optional<double>();
   const auto number = reading::json_number(document, key, file);
   if (!number) return tl::unexpected(number.error());
-  if (*number >= least && *number <= most) return std::optional(*number);
-  return fail(ErrorCode::data_corrupt,
-              fmt::format("{}: {} = {} (allowed: {} to {})", file.string(), key, *number, least, most));
+  return std::optional(*number);
 }
 
 Result<std::optional<double>> depth_scale(const nlohmann::json& document, const fs::path& file) {
-  return number_within(document, "depth_scale", 1e-3, 1e6, file);
+  const auto scale = number_of(document, "depth_scale", file);
+  if (!scale || !*scale || calibration::is_units_per_metre(**scale)) return scale;
+  return calibration::no_units_per_metre(ErrorCode::data_corrupt,
+                                         fmt::format("{}: depth_scale", file.string()), **scale);
 }
 
 /// Properties of the recording that its files give beside the camera's matrix.
@@ -89,9 +90,16 @@ Result<Published> read_published(const fs::path& folder, recording::Recording& r
     const auto scale = depth_scale(*document, *file);
     if (!scale) return tl::unexpected(scale.error());
     of_recorder = *scale;
-    const auto rate_hz = number_within(*document, "fps", 1, 1000, *file);
+    const auto rate_hz = number_of(*document, "fps", *file);
     if (!rate_hz) return tl::unexpected(rate_hz.error());
-    published.rate_hz = *rate_hz;
+    if (!*rate_hz || recording::is_frame_rate(**rate_hz)) {
+      published.rate_hz = *rate_hz;
+    } else {  // of recorders that do not know it, 0
+      recording.warnings.push_back(
+          fmt::format("{}: fps = {} is not used (allowed: 1 to 1000); --frame-rate gives the rate of frames "
+                      "without stamps",
+                      file->string(), **rate_hz));
+    }
     reading::warn_of_unused_keys(*document, kRecorderKeys, *file, recording.warnings);
   }
   std::optional<double> of_config;

@@ -82,7 +82,11 @@ TEST(TumRgbd, DepthFactor) {
   options.depth_units_per_metre = 1000;
   EXPECT_EQ(open_tum_rgbd(folder.path(), options)->load_frame(0)->depth_m(0, 0), 5.0F);
   options.depth_units_per_metre = 0;
-  expect_contains(refusal(folder, ErrorCode::configuration, options), "depth_units_per_metre = 0");
+  expect_contains(refusal(folder, ErrorCode::configuration, options),
+                  "depth_units_per_metre (--depth-units) = 0 ");
+  options.depth_units_per_metre = 0.0002;
+  expect_contains(refusal(folder, ErrorCode::configuration, options),
+                  "0.0002 metres per unit are 5000 units per metre");
   options.depth_units_per_metre = 5000;
   options.max_difference_s = -1;
   expect_contains(refusal(folder, ErrorCode::configuration, options), "max_difference_s = -1");
