@@ -126,7 +126,7 @@ Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest
     return fail(ErrorCode::usage, "poses without stamps (kitti) cannot be compared by time",
                 "`--protocol evo` goes by the number of the pose, with --delta in frames, metres or degrees");
   }
-  request.association.rule = trajectory_files::AssociationRule::index;
+  request.association.rule = sides.rule_without_stamps();
   return {};
 }
 
