@@ -57,20 +57,14 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   return calibration;
 }
 
-/// The value of `key`; nothing if it is not there.
-Result<std::optional<double>> number_of(const nlohmann::json& document, const std::string& key,
-                                        const fs::path& file) {
-  if (!document.contains(key)) return std::optional<double>();
-  const auto number = reading::json_number(document, key, file);
-  if (!number) return tl::unexpected(number.error());
-  return std::optional(*number);
-}
-
+/// Nothing if it is not there.
 Result<std::optional<double>> depth_scale(const nlohmann::json& document, const fs::path& file) {
-  const auto scale = number_of(document, "depth_scale", file);
-  if (!scale || !*scale || calibration::is_units_per_metre(**scale)) return scale;
+  if (!document.contains("depth_scale")) return std::optional<double>();
+  const auto scale = reading::json_number(document, "depth_scale", file);
+  if (!scale) return tl::unexpected(scale.error());
+  if (calibration::is_units_per_metre(*scale)) return std::optional(*scale);
   return calibration::no_units_per_metre(ErrorCode::data_corrupt,
-                                         fmt::format("{}: depth_scale", file.string()), **scale);
+                                         fmt::format("{}: depth_scale", file.string()), *scale);
 }
 
 /// Properties of the recording that its files give beside the camera's matrix.
@@ -90,16 +84,9 @@ Result<Published> read_published(const fs::path& folder, recording::Recording& r
     const auto scale = depth_scale(*document, *file);
     if (!scale) return tl::unexpected(scale.error());
     of_recorder = *scale;
-    const auto rate_hz = number_of(*document, "fps", *file);
+    const auto rate_hz = reading::json_frame_rate(*document, *file, recording.warnings);
     if (!rate_hz) return tl::unexpected(rate_hz.error());
-    if (!*rate_hz || recording::is_frame_rate(**rate_hz)) {
-      published.rate_hz = *rate_hz;
-    } else {  // of recorders that do not know it, 0
-      recording.warnings.push_back(
-          fmt::format("{}: fps = {} is not used (allowed: 1 to 1000); --frame-rate gives the rate of frames "
-                      "without stamps",
-                      file->string(), **rate_hz));
-    }
+    published.rate_hz = *rate_hz;
     reading::warn_of_unused_keys(*document, kRecorderKeys, *file, recording.warnings);
   }
   std::optional<double> of_config;
