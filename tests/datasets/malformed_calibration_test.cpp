@@ -92,7 +92,7 @@ TEST_F(MalformedCalibration, BrokenLinesAreNamed) {
       {"-0.125", "\"a\"", 9, "must be a list of 5 finite numbers"},
       {"0.002, 0]", "0.002]", 9, "must be a list of 5 finite numbers"},
       {"0.002, 0]", "0.002, 0", 10, "not valid TOML"},
-      {"1000", "0", 11, "depth.units_per_metre must be a number from"},
+      {"1000", "0", 11, "depth.units_per_metre = 0 (allowed: 0.1 to"},
       {"[depth]", "[lens]", 11, "unknown key 'lens.units_per_metre'"},
       {"[depth]", "[depth", 10, "not valid TOML"},
       {"units_per_metre = 1000", "T_color_depth = [1,0,0,0, 0,1,0,0, 0,0,1,0]", 10, "[depth]"},

@@ -379,7 +379,7 @@ TEST(TumRgbd, RefusesBadRowsWithFileAndLine) {
     return refusal(folder, ErrorCode::data_corrupt);
   };
   expect_contains(after_writing("rgb.txt", "# x\n10.0\n"),
-                  "rgb.txt:2: expected 2 columns: timestamp filename, got 1");
+                  "rgb.txt:2: expected 2 columns or more: timestamp filename, got 1");
   expect_contains(after_writing("rgb.txt", "# nothing\n"), "rgb.txt: has no rows");
   expect_contains(after_writing("rgb.txt", "10.1 rgb/0.png\n10.0 rgb/1.png\n"),
                   "rgb.txt:2: time runs backwards by 0.1 s (timestamp 10.0 after line 1)");
