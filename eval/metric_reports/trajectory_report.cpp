@@ -50,6 +50,9 @@ std::string association_text(const trajectory_error::TrajectoryEvaluation& e) {
     case trajectory_files::AssociationRule::index:
       how = "by the number of the pose";
       break;
+    case trajectory_files::AssociationRule::number:
+      how = "by the number of the frame";
+      break;
     case trajectory_files::AssociationRule::interpolated:
       how = fmt::format("reference interpolated in gaps of at most {:.6g} s", a.max_difference_s);
       break;

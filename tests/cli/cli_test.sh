@@ -688,6 +688,19 @@ check_formats() {
   done
   awk '{ print $0, "0 0 0 1" }' kitti.txt >whole.txt
   prints 'by the number of the pose' "whole matrices" eval ate whole.txt kitti.txt
+  awk '{ print NR - 1, $0 }' kitti.txt >counted.txt
+  awk 'NR % 10 != 5' counted.txt >gaps.txt
+  prints 'by the number of the frame' "matrices after numbers" eval ate counted.txt gaps.txt
+  grep -q '^pairs .*54 of 54' stdout || complain "matrices after numbers: another number of pairs"
+  paste -d ' ' <(cut -d ' ' -f 1 gt.txt) kitti.txt >stamped.txt
+  prints 'estimate kitti \(by its columns, matrices after a stamp\)' "matrices after stamps" eval ate gt.txt stamped.txt
+  sed 's/[^ ]*/"&"/g; s/ /,/g' est.txt >quoted.csv
+  "$binary" eval ate gt.txt quoted.csv | grep -qxF "$rmse" || complain "quoted cells: another error than of est.txt"
+  awk '{ split($1, t, "."); $1 = t[1] " " substr(t[2] "000000000", 1, 9) + 0; print }' est.txt >halves.txt
+  accepted "stamps in two columns" '^rmse' 'seconds and nanoseconds in two columns' eval ate gt.txt halves.txt
+  [[ $(grep '^rmse' stdout) == "$rmse" ]] || complain "stamps in two columns: another error than of est.txt"
+  sed 's/[. ]/,/g' est.txt >commas.csv
+  refused "decimal commas between commas" 3 'commas.csv:[0-9]+: decimal commas' 'hint:decimal point' -- eval ate gt.txt commas.csv
   sed 's/\./,/g' est.txt >commas.txt
   refused "decimal commas" 3 'commas.txt:1: decimal commas' 'hint:decimal point' -- eval ate tum gt.txt commas.txt
   refused "a line of names without a pose" 3 'few.csv:1: a line of names, but no column' 'hint:put # before' -- \
@@ -722,6 +735,11 @@ check_evaluation() {
   accepted "a still estimate by its first pose" 'rmse' 'does one of them not move' eval ape gt.txt still.txt --align origin
   accepted "a still estimate as it is" 'rmse' 'does one of them not move' eval ape gt.txt still.txt
   refused "a line" 3 'the reference moves along a straight line' -- eval ape line.txt line.txt -a
+  for mode in -s '--align_origin -s' '--align scale'; do
+    # shellcheck disable=SC2086
+    refused "a line, $mode" 3 'moves along a straight line' 'hint:--align origin .* in place of -a, -s' -- eval ate line.txt line.txt $mode
+  done
+  prints 'rmse' "a line, as the hint says" eval ate line.txt line.txt --align origin
   prints 'rmse' "a line about the vertical" eval ape line.txt line.txt --align yaw
   refused "a vertical line" 3 'the estimate does not move horizontally' -- eval ape gt.txt rising.txt --align yaw
   prints '60 of 60 possible' "a limit without an end" eval ape gt.txt est.txt --protocol tum --t_max_diff 1e300

@@ -41,11 +41,10 @@ Result<SE3> alignment_of_trajectories(const std::vector<std::filesystem::path>& 
   const auto sides = trajectories::load_sides(files[0], files[1]);
   if (!sides) return tl::unexpected(sides.error());
   constexpr double kMaxGap_s = 0.1;
-  const auto pair =
-      trajectory_files::pair_up(sides->reference.poses, sides->estimate.poses,
-                                {sides->have_stamps() ? trajectory_files::AssociationRule::interpolated
-                                                      : trajectory_files::AssociationRule::index,
-                                 kMaxGap_s});
+  const auto pair = trajectory_files::pair_up(
+      sides->reference.poses, sides->estimate.poses,
+      {sides->have_stamps() ? trajectory_files::AssociationRule::interpolated : sides->rule_without_stamps(),
+       kMaxGap_s});
   if (!pair) return tl::unexpected(pair.error());
   std::vector<SE3> T_truth_camera;
   std::vector<SE3> T_estimate_camera;

@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
+#include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::cli::trajectories {
 
@@ -15,6 +16,10 @@ struct Sides {
   trajectory_files::LoadedTrajectory reference;
   trajectory_files::LoadedTrajectory estimate;
   [[nodiscard]] bool have_stamps() const { return reference.has_stamps() && estimate.has_stamps(); }
+  [[nodiscard]] trajectory_files::AssociationRule rule_without_stamps() const {
+    return reference.has_numbers() || estimate.has_numbers() ? trajectory_files::AssociationRule::number
+                                                             : trajectory_files::AssociationRule::index;
+  }
 };
 
 /// Reading options of the two files; formats that are not given are recognised.

@@ -128,7 +128,7 @@ Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest
         ErrorCode::usage, "poses without stamps (kitti) cannot be compared by time",
         "`--protocol evo` associates poses by their index, with --delta in frames, metres or degrees");
   }
-  request.association.rule = trajectory_files::AssociationRule::index;
+  request.association.rule = sides.rule_without_stamps();
   return {};
 }
 
