@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "core/base/upper_median.hpp"
 #include "eval/reference_clock/correlated_variance.hpp"
 
 namespace fusebench::reference_clock {
@@ -49,16 +51,10 @@ std::vector<Observation> observed(double offset_s, const Trajectory& reference,
   return observations;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Standard deviation of an axis from norms of three: their median is 1.538 standard deviations.
 double sigma_of(std::vector<double> norms) {
   constexpr double kMedianOfChi3 = 1.538;
-  return std::max(kDecimals, median_of(std::move(norms)) / kMedianOfChi3);
+  return std::max(kDecimals, upper_median(std::move(norms)) / kMedianOfChi3);
 }
 
 MotionSigmas sigmas_of(std::span<const Residual> residuals) {
@@ -88,7 +84,7 @@ void bound_instruments(std::span<const Observation> observations, std::vector<Re
   std::vector<double> references;
   for (std::size_t k = 0; k < residuals.size(); ++k)
     references.push_back(whitened_norm(observations[k].reference.rate, residuals[k].weight));
-  const double median = median_of(references);
+  const double median = upper_median(references);
   for (std::size_t k = 0; k < residuals.size(); ++k) {
     const double limit = kLargest * std::max(median, references[k]);
     const double norm = whitened_norm(residuals[k].instrument, residuals[k].weight);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/upper_median.hpp"
+
 namespace fusebench::reference_clock {
 
 namespace {
@@ -19,10 +21,7 @@ std::vector<double> bounded_weights(std::span<const MotionPair> pairs, const Mot
     sizes.push_back(std::hypot(so3_log(pair.estimated.rotation).norm() / sigmas.rotation_rad,
                                pair.estimated.translation.norm() / sigmas.translation_m));
   }
-  std::vector<double> sorted = sizes;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double large = kLarge * *middle;
+  const double large = kLarge * upper_median(sizes);
   for (double& size : sizes) size = size <= large ? 1.0 : large / size;
   return sizes;
 }
