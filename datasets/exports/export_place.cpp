@@ -91,15 +91,20 @@ std::string ExportPlace::beside(std::string_view ending) const {
   return fmt::format("{}.{}", fs::path(name_).stem().string(), ending);
 }
 
-Result<void> ExportPlace::create_folder(std::string_view name) const {
-  std::error_code error;
-  fs::create_directories(file(name), error);
-  if (error) return cannot_be_written(file(name), error.message());
+Result<void> ExportPlace::create_folders(const std::vector<std::string>& names) const {
+  for (const std::string& name : names) {
+    std::error_code error;
+    fs::create_directories(file(name), error);
+    if (error) return cannot_be_written(file(name), error.message());
+  }
   return {};
 }
 
-Result<void> ExportPlace::write(std::string_view name, std::string_view text) const {
-  return staged_.write(name, text);
+Result<void> ExportPlace::write(const std::vector<TextFile>& files) const {
+  for (const auto& [name, text] : files) {
+    if (auto written = staged_.write(name, text); !written) return written;
+  }
+  return {};
 }
 
 Result<void> ExportPlace::commit() { return kind_ == Kind::folder ? staged_.commit() : move_files(); }

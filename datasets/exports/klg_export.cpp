@@ -1,11 +1,11 @@
-#include "datasets/exports/klg_export.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/quantised_frames.hpp"
+#include "datasets/image_logs/klg_log.hpp"
 
 namespace fusebench::exports {
 
@@ -51,20 +51,19 @@ Result<WrittenExport> write_klg(const recording::Recording& recording, const Exp
   const PinholeCamera& camera = recording.rig.camera;
   const std::string calibration = place.beside("calibration.txt");
   const auto calibrated = place.write(
-      calibration, fmt::format("{} {} {} {}\n", camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px));
+      {{calibration, fmt::format("{} {} {} {}\n", camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)}});
   if (!calibrated) return tl::unexpected(calibrated.error());
   const auto counts = write_frames(recording, place.file(place.name()));
   if (!counts) return tl::unexpected(counts.error());
-  WrittenExport result{*counts, {place.name(), calibration}, {}};
-  result.calibration = calibration;
-  result.notes = {
-      fmt::format("ElasticFusion: ElasticFusion -l {} -cal {} -q; colour is red, green, blue: no -f",
-                  place.name(), calibration),
-      fmt::format(
-          "the file counts {} frames: the last one is written twice, since the reader stops one early",
-          recording.frames.size() + 1)};
-  if (!recording.imu.empty()) result.notes.push_back("inertial samples are not written");
-  return result;
+  return WrittenExport{
+      *counts,
+      {place.name(), calibration},
+      {fmt::format("ElasticFusion: ElasticFusion -l {} -cal {} -q; colour is red, green, blue: no -f",
+                   place.name(), calibration),
+       fmt::format(
+           "the file counts {} frames: the last one is written twice, since the reader stops one early",
+           recording.frames.size() + 1)},
+      calibration};
 }
 
 }  // namespace fusebench::exports

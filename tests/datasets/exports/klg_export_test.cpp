@@ -1,9 +1,10 @@
-#include "datasets/exports/klg_export.hpp"
+#include "datasets/exports/export_formats.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
 
 #include "datasets/exports/export_recording.hpp"
+#include "datasets/image_logs/klg_log.hpp"
 #include "tests/datasets/exports/made_recording.hpp"
 #include "tests/support/expect_text.hpp"
 
