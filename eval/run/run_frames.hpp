@@ -6,20 +6,39 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/base/replay.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/systems/system.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/frame_replay.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_placement.hpp"
+#include "eval/run_files/filter_tables.hpp"
 #include "eval/run_files/frame_table.hpp"
 #include "eval/run_files/patch_table.hpp"
-#include "eval/run_files/state_table.hpp"
 
 namespace fusebench::run {
+
+/// What a system of the run replays frames by (base/replay.hpp).
+class FrameReplay {
+ public:
+  /// The references must outlive it.
+  FrameReplay(const PreparedRun& run, const RunControl& control) : run_(run), control_(control) {}
+
+  /// So many frames were given to the system.
+  void set_seen(std::size_t frames) { seen_ = frames; }
+
+  /// The frames that were seen, in order. Errors: run_failed (a stop), those of the recording and the
+  /// visitor.
+  [[nodiscard]] Result<void> visit(const FrameVisitor& visitor) const;
+
+ private:
+  const PreparedRun& run_;
+  const RunControl& control_;
+  std::size_t seen_ = 0;
+};
 
 /// What the frames left behind; grows frame by frame.
 struct RunProgress {

@@ -1,4 +1,5 @@
-// What another system made of a recording, as a run beside ours.
+// What other systems make of a recording, as runs beside ours: their output that is imported, and external
+// programs that are run.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "datasets/open_recording.hpp"
 #include "eval/external/system_trajectory.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/run.hpp"
+#include "eval/run/run_control.hpp"
+#include "eval/run/run_placement.hpp"
 
 namespace fusebench::run {
 
@@ -40,5 +43,12 @@ struct ImportedRun {
 /// imported already for the same frames, IMU and kind of poses; those of open_recording,
 /// external::read_system_trajectory() and read_foreign_mesh(); io.
 [[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
+
+/// Exports the recording, runs the program, and evaluates what it left as an imported run is evaluated; the
+/// folder gets record.json, trajectory.tum, truth.tum, mesh.ply and log.txt. A
+/// program that dies, hangs or leaves what cannot be used is a record with status failed and its reason.
+/// Errors: as execute_run().
+[[nodiscard]] Result<record::RunRecord> execute_program_run(const PreparedRun& run,
+                                                            const RunControl& control);
 
 }  // namespace fusebench::run
