@@ -1,6 +1,8 @@
 #include "eval/text/markup_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "core/base/error.hpp"
 
@@ -8,35 +10,20 @@ namespace fusebench::text {
 
 namespace {
 
-std::string_view entity_of(char character) {
-  switch (character) {
-    case '&':
-      return "&amp;";
-    case '<':
-      return "&lt;";
-    case '>':
-      return "&gt;";
-    case '"':
-      return "&quot;";
-    case '\'':
-      return "&apos;";
-    case '@':
-      return "&#64;";
-    default:
-      check(false, "the character has an entity");
-      return "";
-  }
-}
+constexpr std::array<std::pair<char, std::string_view>, 6> kEntities = {
+    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&apos;"}, {'@', "&#64;"}}};
 
 }  // namespace
 
 std::string with_entities(std::string_view text, std::string_view characters) {
   std::string result;
   for (const char c : text) {
+    const auto* const entity = std::ranges::find(kEntities, c, &std::pair<char, std::string_view>::first);
     if (characters.find(c) == std::string_view::npos) {
       result += c;
     } else {
-      result += entity_of(c);
+      check(entity != kEntities.end(), "the character has an entity");
+      result += entity->second;
     }
   }
   return result;
