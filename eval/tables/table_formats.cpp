@@ -120,20 +120,8 @@ void keep_columns(const std::vector<std::string>& metrics, LatexTable& table) {
     if (is_name || (place < keys.size() && std::ranges::find(metrics, keys[place]) != metrics.end()))
       kept.push_back(column);
   }
-  const auto chosen = [&](const Cells& cells) {
-    Cells result;
-    for (const std::size_t column : kept) result.push_back(cells[column]);
-    return result;
-  };
-  table.heading = chosen(table.heading);
-  for (LatexTable::Line& line : table.lines) {
-    std::vector<std::size_t> bold;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      if (std::ranges::find(line.bold, kept[i]) != line.bold.end()) bold.push_back(i);
-    }
-    line.cells = chosen(line.cells);
-    line.bold = std::move(bold);
-  }
+  table.heading = chosen({table.heading}, kept).cells;
+  for (LatexTable::Line& line : table.lines) line = chosen(line, kept);
 }
 
 std::string latex(const ResultTable& table, const LatexLayout& layout) {
