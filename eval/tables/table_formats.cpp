@@ -321,19 +321,11 @@ Result<TableFormat> parse_table_format(std::string_view text) {
 
 std::string render_table(const ResultTable& table, TableFormat format, const LatexLayout& layout,
                          std::size_t width) {
-  switch (format) {
-    case TableFormat::markdown:
-      return markdown(table, width);
-    case TableFormat::csv:
-      return csv(table);
-    case TableFormat::csv_long:
-      return csv_long(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-  }
-  return {};
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv) return csv(table);
+  if (format == TableFormat::csv_long) return csv_long(table);
+  return markdown(table, width);
 }
 
 }  // namespace fusebench::tables
