@@ -32,10 +32,10 @@ inline constexpr DepthStorage kInfinitamDepth{1000, 32000};
 inline constexpr DepthStorage kKlgDepth{1000, 65535};
 /// ElasticFusion numbers frames with 16 bits.
 inline constexpr std::size_t kKlgMostFrames = 65535;
-/// .klg logs for ElasticFusion and Kintinuous: NAME.klg and NAME.calibration.txt (one line, "fx fy cx cy" in
-/// pixels). Depth is packed, colour plain, so that both come back as they are. The last frame is written
-/// twice: the reader stops one frame early. Errors: those of the recording, io, usage (images of another
-/// size).
+/// .klg logs for ElasticFusion and Kintinuous (Whelan et al., IJRR 2016): NAME.klg and NAME.calibration.txt
+/// (one line, "fx fy cx cy" in pixels). Depth is packed, colour plain, so that both come back as they are.
+/// The last frame is written twice: the reader stops one frame early. Errors: those of the recording, io,
+/// usage (images of another size).
 [[nodiscard]] Result<WrittenExport> write_klg(const recording::Recording& recording,
                                               const ExportPlace& place);
 
