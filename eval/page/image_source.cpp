@@ -1,7 +1,7 @@
 #include "eval/page/image_source.hpp"
 
 #include "datasets/images/image_files.hpp"
-#include "eval/text/base64.hpp"
+#include "eval/text/markup_text.hpp"
 
 namespace fusebench::page {
 

@@ -14,7 +14,7 @@
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/trajectory/association.hpp"
 #include "eval/pose_intensity/probes.hpp"
-#include "eval/record/true_camera.hpp"
+#include "eval/record/record_origin.hpp"
 
 namespace fusebench::pose_intensity {
 

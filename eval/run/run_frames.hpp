@@ -6,20 +6,39 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/base/replay.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/systems/system.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/frame_replay.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_placement.hpp"
+#include "eval/run_files/filter_tables.hpp"
 #include "eval/run_files/frame_table.hpp"
 #include "eval/run_files/patch_table.hpp"
-#include "eval/run_files/state_table.hpp"
 
 namespace fusebench::run {
+
+/// The replay interface of a run (base/replay.hpp).
+class FrameReplay {
+ public:
+  /// The references must outlive it.
+  FrameReplay(const PreparedRun& run, const RunControl& control) : run_(run), control_(control) {}
+
+  /// Sets the number of frames that the system has processed.
+  void set_seen(std::size_t frames) { seen_ = frames; }
+
+  /// Visits the processed frames in order. Errors: run_failed (a stop), those of the recording and the
+  /// visitor.
+  [[nodiscard]] Result<void> visit(const FrameVisitor& visitor) const;
+
+ private:
+  const PreparedRun& run_;
+  const RunControl& control_;
+  std::size_t seen_ = 0;
+};
 
 /// Results of the frames so far.
 struct RunProgress {

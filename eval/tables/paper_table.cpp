@@ -257,18 +257,10 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
 
 std::string render_paper_table(const PaperTable& table, TableFormat format, const LatexLayout& layout,
                                std::size_t width) {
-  switch (format) {
-    case TableFormat::markdown:
-      return markdown(table, width);
-    case TableFormat::csv:
-    case TableFormat::csv_long:
-      return csv(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-  }
-  return {};
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv || format == TableFormat::csv_long) return csv(table);
+  return markdown(table, width);
 }
 
 }  // namespace fusebench::tables

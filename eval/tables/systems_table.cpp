@@ -296,17 +296,9 @@ std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& ta
 
 std::string render_systems_table(const SystemsTable& table, TableFormat format, const LatexLayout& layout,
                                  std::size_t width) {
-  switch (format) {
-    case TableFormat::csv:
-    case TableFormat::csv_long:
-      return csv(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-    case TableFormat::markdown:
-      break;
-  }
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv || format == TableFormat::csv_long) return csv(table);
   return markdown(table, width);
 }
 

@@ -11,7 +11,6 @@
 #include "core/io/staged_file.hpp"
 #include "core/mesh/mesh_file.hpp"
 #include "core/mesh/ply_file.hpp"
-#include "core/mesh/scaled_mesh.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/progress.hpp"

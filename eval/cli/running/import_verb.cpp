@@ -10,7 +10,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/record/clock_note.hpp"
-#include "eval/run/imported_run.hpp"
+#include "eval/run/foreign_runs.hpp"
 #include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::running {

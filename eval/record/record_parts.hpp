@@ -1,11 +1,25 @@
-// Histograms of durations in JSON documents.
+// The camera, the loops and the histograms of durations in a record, as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 #include "eval/record/duration_histogram.hpp"
+#include "eval/record/record.hpp"
 
 namespace fusebench::record {
+
+/// The value of "camera": the tables "color" and "depth".
+[[nodiscard]] nlohmann::ordered_json json_of_camera(const RecordedCamera& camera);
+
+/// Throws the exceptions of the JSON library for what is missing, and std::invalid_argument for a number
+/// that no calibration may have: it may be used to read images.
+[[nodiscard]] RecordedCamera camera_of(const nlohmann::ordered_json& json);
+
+/// The value of "loops": the errors, or {"error": null, "reason": ...}.
+[[nodiscard]] nlohmann::ordered_json json_of_loops(const Outcome<loop_error::LoopError>& loops);
+
+/// Throws the exceptions of the JSON library for what is missing or wrong.
+[[nodiscard]] Outcome<loop_error::LoopError> loops_of(const nlohmann::ordered_json& json);
 
 /// {"count", "min", "median", "p90", "p99", "max", "edges", "counts"}; all but counts in milliseconds.
 [[nodiscard]] inline nlohmann::ordered_json json_of(const DurationHistogram& histogram) {

@@ -1,4 +1,4 @@
-// Evaluates the output of another system as a run.
+// Evaluates the output of other systems as runs: output that is imported, and external programs that are run.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "datasets/open_recording.hpp"
 #include "eval/external/system_trajectory.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/run.hpp"
+#include "eval/run/run_control.hpp"
+#include "eval/run/run_placement.hpp"
 
 namespace fusebench::run {
 
@@ -40,5 +42,12 @@ struct ImportedRun {
 /// which other files are imported for the same frames, IMU and kind of poses; those of open_recording,
 /// external::read_system_trajectory() and read_foreign_mesh(); io.
 [[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
+
+/// Exports the recording, runs the program, and evaluates its output as an imported run; the
+/// folder gets record.json, trajectory.tum, truth.tum, mesh.ply and log.txt. A
+/// program that crashes, hangs or writes unusable output gives a record with status failed and the reason.
+/// Errors: as execute_run().
+[[nodiscard]] Result<record::RunRecord> execute_program_run(const PreparedRun& run,
+                                                            const RunControl& control);
 
 }  // namespace fusebench::run

@@ -1,23 +1,23 @@
-#include "eval/run/imported_run.hpp"
+#include "eval/run/foreign_runs.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "core/base/types.hpp"
 #include "core/config/config_access.hpp"
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "datasets/recording/recording.hpp"
 #include "eval/external/foreign_mesh.hpp"
 #include "eval/external/frame_poses.hpp"
+#include "eval/external/program_results.hpp"
 #include "eval/external/system_name.hpp"
-#include "eval/external/system_trajectory.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/truth_contradiction.hpp"
-#include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 #include "eval/run_files/found_runs.hpp"
@@ -26,6 +26,28 @@
 namespace fusebench::run {
 
 namespace {
+
+/// What another system made of a recording as the output of a run.
+RunOutput foreign_output(const external::FramePoses& frames, Mesh mesh) {
+  RunOutput output;
+  output.has_filter = false;
+  output.trajectory = frames.poses;
+  for (const auto& [stamp_ns, instant_ns] : frames.stamps) output.states.push_back({instant_ns, {}});
+  output.mesh = std::move(mesh);
+  return output;
+}
+
+/// Fills in the frames with and without a pose, the model, and the metrics.
+void evaluate_foreign_output(const RunOutput& output, const recording::Recording& recording,
+                             const config::Config& config, int threads, record::RunRecord& record) {
+  record.frames.total = recording.frames.size();
+  record.frames.tracked = output.trajectory.size();
+  record.frames.lost = record.frames.total - record.frames.tracked;
+  record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
+  record.metrics = metrics_of(output, recording, config, Workers(threads));
+  record::note_contradiction(record, record::true_trajectory(recording, record::frame_stamps(recording)),
+                             output.trajectory);
+}
 
 Result<void> check_name(const std::string& name) {
   switch (external::fault_of_system_name(name)) {
@@ -101,6 +123,27 @@ Result<void> write(ImportedRun& run, RunOutput& output, const std::string& truth
   return write_run_folder(*folder, output.mesh.vertices.empty() ? nullptr : &output.mesh, texts, run.record);
 }
 
+std::string log_of(const std::string& version, const external::ProgramResults& results,
+                   const record::RunRecord& record) {
+  std::string log;
+  if (!version.empty()) log += fmt::format("version: {}\n", version);
+  for (const std::string& note : results.notes) log += note + "\n";
+  log += fmt::format("{}: {} of {} frames have a pose; {}\n", record::to_string(record.status),
+                     record.frames.tracked, record.frames.total,
+                     record.reason.empty() ? results.end.how : record.reason);
+  if (!results.end.output.empty()) log += "what the program printed last:\n" + results.end.output;
+  return log;
+}
+
+record::RecordedTiming program_timing(const external::ProgramResults& results, std::size_t frames) {
+  record::RecordedTiming timing;
+  timing.wall_s = results.end.wall_s;
+  timing.cpu_s = results.end.cpu_s;
+  timing.peak_rss_bytes = results.end.peak_rss_bytes;
+  timing.fps = timing.wall_s > 0 ? static_cast<double>(frames) / timing.wall_s : 0;
+  return timing;
+}
+
 }  // namespace
 
 Result<ImportedRun> import_run(const ImportSpec& spec) {
@@ -131,14 +174,48 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.config_hash = *hash;
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
   if (auto first = check_first_of_its_name(run); !first) return tl::unexpected(first.error());
-  describe_foreign_output(output, *recording, record);
-  record.metrics = metrics_of(output, *recording, config::EffectiveConfig{}.values(), Workers(spec.threads));
-  record::note_contradiction(record, record::true_trajectory(*recording, record::frame_stamps(*recording)),
-                             output.trajectory);
+  evaluate_foreign_output(output, *recording, config::EffectiveConfig{}.values(), spec.threads, record);
   record.provenance = record::provenance_here(spec.threads);
   if (auto written = write(run, output, record::evaluated_truth_text(*recording)); !written)
     return tl::unexpected(written.error());
   return run;
+}
+
+Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunControl& control) {
+  const external::ExternalProgram& program = *run.spec.program;
+  const recording::Recording& recording = run.recording;
+  auto folder = io::StagedFolder::create(run.folder);
+  if (!folder) return tl::unexpected(folder.error());
+  const std::filesystem::path work = folder->file("work");
+  std::error_code error;
+  std::filesystem::create_directories(work, error);
+  if (error)
+    return fail(ErrorCode::io, fmt::format("{}: cannot be made: {}", work.string(), error.message()));
+  const std::size_t total = recording.frames.size();
+  const auto go_on = [&] {
+    if (control.progress) control.progress(0, total);  // alive; how far it is, only the program knows
+    return !control.is_stopped();
+  };
+  auto results = external::run_external_program(
+      program, recording, {run.spec.recording, work, run.spec.threads, seed_of(run.spec)}, go_on);
+  if (!results) return tl::unexpected(results.error());
+  std::filesystem::remove_all(work, error);
+
+  RunOutput output = foreign_output(results->frames, std::move(results->mesh));
+  record::RunRecord record = requested_record(run);
+  record.status = results->reason.empty() ? record::RunStatus::ok : record::RunStatus::failed;
+  record.reason = results->reason;
+  evaluate_foreign_output(output, recording, run.spec.config.values(), run.spec.threads, record);
+  record.timing = program_timing(*results, total);
+  record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
+  const std::array<NamedText, 3> texts = {{{"trajectory.tum", trajectory::tum_text(output.trajectory)},
+                                           {"truth.tum", record::evaluated_truth_text(recording)},
+                                           {"log.txt", log_of(program.version, *results, record)}}};
+  Mesh* const mesh =
+      run.spec.kept == KeptFiles::all && !output.mesh.vertices.empty() ? &output.mesh : nullptr;
+  if (auto written = write_run_folder(*folder, mesh, texts, record); !written)
+    return tl::unexpected(written.error());
+  return record;
 }
 
 }  // namespace fusebench::run
