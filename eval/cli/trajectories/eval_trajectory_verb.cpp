@@ -62,11 +62,6 @@ std::string errors_text(const trajectory_error::ErrorSeries& series) {
 
 void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Transcript& transcript) {
   constexpr double kFew = 0.5;
-  if (const double share = evaluation.time_coverage.value_or(1); share < kFew)
-    transcript.warn(
-        {fmt::format("the estimate covers {:.1f} % of the reference's time: the numbers do not "
-                     "describe the rest",
-                     100 * share)});
   if (evaluation.coverage >= kFew) return;
   transcript.warn({fmt::format(
       "only {} of {} possible pairs were compared ({:.1f} %): the numbers do not describe the rest",
