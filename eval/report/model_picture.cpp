@@ -7,6 +7,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/report/model_view.hpp"
+#include "eval/report/narrowed_image.hpp"
 
 namespace fusebench::report {
 
@@ -28,7 +29,7 @@ std::vector<Vector3d> some_vertices(const PreciseMesh& mesh) {
   return points;
 }
 
-Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points) {
+Eigen::AlignedBox3d middle_of(const std::vector<Vector3d>& points) {
   Eigen::AlignedBox3d box;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> places;
@@ -75,14 +76,6 @@ std::vector<Vector3d> near_places(std::span<const SE3> poses, const Eigen::Align
   return places;
 }
 
-ColorImage halved(ColorImage& image) {
-  ColorImage half(image.width / 2, image.height / 2);
-  const cv::Mat from(image.height, image.width, CV_8UC3, image.data.data());
-  cv::Mat to(half.height, half.width, CV_8UC3, half.data.data());
-  cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
-  return half;
-}
-
 /// A line with a white edge, so that it is seen on any colour.
 void draw_path(const std::vector<Vector3d>& places, const PinholeCamera& camera, const SE3& T_view_mesh,
                const Rgb& colour, ColorImage& image) {
@@ -108,15 +101,16 @@ void draw_path(const std::vector<Vector3d>& places, const PinholeCamera& camera,
 ColorImage model_picture(const PreciseMesh& mesh, std::span<const SE3> poses, const Rgb& path) {
   check(!mesh.vertices.empty() && !poses.empty(), "a picture is of a mesh and a path");
   const std::vector<Vector3d> points = some_vertices(mesh);
-  const Eigen::AlignedBox3d box = box_of(points);
+  const Eigen::AlignedBox3d box = middle_of(points);
   const SE3 T = T_mesh_view(box, poses);
   const std::vector<Vector3d> places = near_places(poses, box);
   Eigen::AlignedBox2d seen = seen_box(points, T, kStray);
   if (!places.empty()) seen.extend(seen_box(places, T, 0));
   const double shape = std::clamp(seen.sizes().y() / std::max(seen.sizes().x(), 1e-6), kFlattest, kHighest);
   const int height_px = static_cast<int>(std::lround(kWidth_px * shape));
-  ColorImage large = model_view(mesh.cast<float>(), camera_around(seen, 2 * kWidth_px, 2 * height_px), T);
-  ColorImage image = halved(large);
+  const ColorImage large =
+      model_view(mesh.cast<float>(), camera_around(seen, 2 * kWidth_px, 2 * height_px), T);
+  ColorImage image = narrowed(large, kWidth_px);
   draw_path(places, camera_around(seen, kWidth_px, height_px), T.inverse(), path, image);
   return image;
 }

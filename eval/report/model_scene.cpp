@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
-#include <opencv2/imgproc.hpp>
 #include <system_error>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "eval/page/figures.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/report/model_picture.hpp"
+#include "eval/report/narrowed_image.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::report {
@@ -68,21 +68,12 @@ Rgb rgb_of(std::string_view colour) {
 }
 
 /// path: in the frame of its first camera.
-ColorImage picture_of(PreciseMesh mesh, const page::ScenePath& path, const SE3& T_first_world) {
+ColorImage picture_of_model(PreciseMesh mesh, const page::ScenePath& path, const SE3& T_first_world) {
   const SE3 T_world_first = T_first_world.inverse();
   std::vector<SE3> poses;
   for (const page::TimedPose& pose : path.poses) poses.push_back(T_world_first * pose.T_scene_camera);
   return model_picture(mesh_error::with_discs(std::move(mesh)), poses,
                        rgb_of(page::figure_colour(path.colour)));
-}
-
-std::string source_of(const ColorImage& picture, int width_px) {
-  if (picture.width <= width_px) return page::png_source(picture);
-  ColorImage small(width_px, std::max(1, picture.height * width_px / picture.width));
-  const cv::Mat from(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.data.data()));
-  cv::Mat to(small.height, small.width, CV_8UC3, small.data.data());
-  cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
-  return page::png_source(small);
 }
 
 }  // namespace
@@ -109,8 +100,8 @@ page::PageScene model_scene(std::span<const run_charts::RunSeries> runs, const S
     }
     scene.paths.push_back(path_of(run, detail.poses));
     if (!scene.paths.back().poses.empty()) {
-      const ColorImage picture = picture_of(*std::move(mesh), scene.paths.back(), run.T_first_world);
-      shown.picture_uri = source_of(picture, detail.picture_width_px);
+      const ColorImage picture = picture_of_model(*std::move(mesh), scene.paths.back(), run.T_first_world);
+      shown.picture_uri = page::png_source(narrowed(picture, detail.picture_width_px));
       if (take_picture) take_picture(run, picture);
     }
     scene.meshes.push_back(std::move(shown));

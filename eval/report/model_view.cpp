@@ -15,7 +15,7 @@ namespace {
 using simulator::rays::RayCaster;
 using simulator::rays::RayHit;
 
-constexpr Rgb kNothing{227, 232, 236};  // neither white, as many models are, nor dark on paper
+constexpr Rgb kNoSurface{227, 232, 236};  // neither white, as many models are, nor dark on paper
 
 /// Drops the triangles that are seen from behind.
 void keep_fronts(Mesh& mesh, const Eigen::Vector3f& origin) {
@@ -80,7 +80,7 @@ PinholeCamera camera_around(const Eigen::AlignedBox2d& box, int width_px, int he
 }
 
 ColorImage model_view(Mesh mesh, const PinholeCamera& camera, const SE3& T_mesh_camera) {
-  ColorImage image(camera.width_px, camera.height_px, kNothing);
+  ColorImage image(camera.width_px, camera.height_px, kNoSurface);
   const Eigen::Vector3f origin = T_mesh_camera.translation.cast<float>();
   keep_fronts(mesh, origin);
   if (mesh.triangles.empty()) return image;

@@ -42,7 +42,7 @@ std::string cell_text(const findings::OverviewCell& cell, const registry::RunMet
 }
 
 /// Of the first run of the cell that has one; empty: none.
-std::string picture_of(const findings::OverviewCell& cell, std::span<const std::string> pictures) {
+std::string first_picture(const findings::OverviewCell& cell, std::span<const std::string> pictures) {
   for (const std::size_t run : cell.members) {
     if (!pictures[run].empty()) return pictures[run];
   }
@@ -69,7 +69,7 @@ page::PageTable by_recording(const findings::Ranking& ranking, const Overview& o
     line.links = {""};
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
       line.cells.push_back(cell_text(row.cells[c], *ranking.metric));
-      line.links.push_back(picture_of(row.cells[c], pictures));
+      line.links.push_back(first_picture(row.cells[c], pictures));
       if (row.cells[c].best) line.best.push_back(c + 1);
     }
     table.rows.push_back(std::move(line));
@@ -124,7 +124,7 @@ page::PageTable by_method(const findings::Ranking& ranking, const Overview& over
     for (std::size_t r = 0; r < recordings; ++r) {
       const findings::OverviewCell& cell = overview[r].cells[c];
       line.cells.push_back(value_text(cell, *ranking.metric));
-      line.links.push_back(picture_of(cell, pictures));
+      line.links.push_back(first_picture(cell, pictures));
       if (cell.best) line.best.push_back(r + 2);
     }
     const Totals totals = totals_of(overview, c);
