@@ -16,7 +16,7 @@ namespace {
 constexpr int kWidth_px = 800;
 constexpr double kFlattest = 0.5;  // height / width
 constexpr double kHighest = 0.9;
-constexpr double kStray = 0.01;  // share of the vertices that is not in view, at each side
+constexpr double kStrayShare = 0.01;  // share of the vertices that is not in view, at each side
 constexpr double kElevation_deg = 25;
 constexpr double kAzimuth_deg = 15;  // to the side of the direction in which the camera mostly looked
 
@@ -35,7 +35,7 @@ Eigen::AlignedBox3d middle_of(const std::vector<Vector3d>& points) {
     std::vector<double> places;
     for (const Vector3d& point : points) places.push_back(point[axis]);
     std::ranges::sort(places);
-    const auto stray = static_cast<std::size_t>(kStray * static_cast<double>(places.size()));
+    const auto stray = static_cast<std::size_t>(kStrayShare * static_cast<double>(places.size()));
     box.min()[axis] = places[stray];
     box.max()[axis] = places[places.size() - 1 - stray];
   }
@@ -104,7 +104,7 @@ ColorImage model_picture(const PreciseMesh& mesh, std::span<const SE3> poses, co
   const Eigen::AlignedBox3d box = middle_of(points);
   const SE3 T = T_mesh_view(box, poses);
   const std::vector<Vector3d> places = near_places(poses, box);
-  Eigen::AlignedBox2d seen = seen_box(points, T, kStray);
+  Eigen::AlignedBox2d seen = seen_box(points, T, kStrayShare);
   if (!places.empty()) seen.extend(seen_box(places, T, 0));
   const double shape = std::clamp(seen.sizes().y() / std::max(seen.sizes().x(), 1e-6), kFlattest, kHighest);
   const int height_px = static_cast<int>(std::lround(kWidth_px * shape));
