@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
 
+#include "datasets/images/image_files.hpp"
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
@@ -31,6 +34,20 @@ struct ReportOptions {
   std::string figure_format = "svg";
 };
 
+/// As PAGE-RUN.png in the folder of the page; PAGE-RUN-2.png where runs have names alike.
+report::PictureWriter pictures_beside(const std::filesystem::path& page) {
+  return [page, names = std::set<std::string>()](const std::string& run,
+                                                 const ColorImage& picture) mutable -> Result<std::string> {
+    const std::string stem = fmt::format("{}-{}", page::file_name_of(page.stem().string()), run);
+    std::string name = stem + ".png";
+    for (int copy = 2; !names.insert(name).second; ++copy) name = fmt::format("{}-{}.png", stem, copy);
+    const auto png = images::encode_png(picture);
+    if (!png) return tl::unexpected(png.error());
+    const std::string_view bytes(reinterpret_cast<const char*>(png->data()), png->size());
+    return text::write_text_file(page.parent_path() / name, bytes).map([&] { return name; });
+  };
+}
+
 Result<int> report(const ReportOptions& options) {
   console::Progress progress(fmt::format("reading {}", options.runs.string()));
   const auto runs = run_files::find_runs(options.runs);
@@ -39,7 +56,8 @@ Result<int> report(const ReportOptions& options) {
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
   progress.say(fmt::format("report of {} runs", runs->size()));
-  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs));
+  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs),
+                                                  pictures_beside(options.out));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
   auto sweep = report::sweep_sections(*rows);

@@ -1,4 +1,4 @@
-#include "eval/paper_figures/model_view.hpp"
+#include "eval/report/model_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace fusebench {
 
-using namespace paper_figures;
+using namespace report;
 
 namespace {
 
@@ -59,11 +59,12 @@ TEST(ModelView, WallsThatFaceAwayAreLookedThrough) {
   EXPECT_EQ(model_view(mesh, camera(), behind)(10, 10), (Rgb{0, 255, 0}));
 }
 
-TEST(ModelView, NothingIsWhite) {
-  EXPECT_EQ(model_view(Mesh{}, camera(), SE3{})(10, 10), (Rgb{255, 255, 255}));
+TEST(ModelView, ShowsLightGreyWhereThereIsNothing) {
+  constexpr Rgb kNothing{227, 232, 236};
+  EXPECT_EQ(model_view(Mesh{}, camera(), SE3{})(10, 10), kNothing);
   Mesh mesh;
   add_square(mesh, -3, true, {200, 100, 50});
-  EXPECT_EQ(model_view(mesh, camera(), SE3{})(10, 10), (Rgb{255, 255, 255})) << "it is behind the camera";
+  EXPECT_EQ(model_view(mesh, camera(), SE3{})(10, 10), kNothing) << "it is behind the camera";
 }
 
 TEST(PanelFigure, HasAPlaceForEachImage) {
