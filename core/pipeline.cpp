@@ -148,7 +148,8 @@ filter::GaussianState Pipeline::dead_reckoned(const filter::GaussianState& predi
 health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted, health::FrameReport& report) {
   if (!tracking_->estimate) return health::FrameStatus::initialised;
   if (track(predicted, false, report)) return health::FrameStatus::tracked;
-  if (novelty_.color && track_again(predicted, true, report)) return health::FrameStatus::tracked;
+  const bool has_intensities = novelty_.color && report.health != health::FrameHealth::dark;
+  if (has_intensities && track_again(predicted, true, report)) return health::FrameStatus::tracked;
   const filter::GaussianState reckoned = dead_reckoned(predicted, preparation_.frame().capture_ns());
   if (!relocalise(reckoned, report)) return health::FrameStatus::lost;
   tracking_->loops.add_relocalisation(reckoned, *tracking_->estimate, tracking_->reference.timestamp_ns);
@@ -179,7 +180,7 @@ filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool tho
   return result;
 }
 
-/// False if the result of the update is not to be believed.
+/// False if the result of the update is rejected.
 bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
   Tracking& now = *tracking_;
   const filter::IekfResult update = this->update(prior, thorough, report.stages);  // Eqs. 1-5, 15-23
@@ -220,7 +221,7 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
   return true;
 }
 
-/// The same once more with a report of its own; the report of the first attempt stays if this one fails.
+/// Retries track() with a fresh report. Keeps the first report if the retry fails.
 bool Pipeline::track_again(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
   health::FrameReport again = health::report_of(preparation_.frame());
   again.stages = report.stages;

@@ -64,27 +64,33 @@ PlaceFeature feature_of(const cv::KeyPoint& corner, const std::uint8_t* descript
   return feature;
 }
 
-/// The nearest and how far the two nearest are.
+/// The nearest known feature of a query feature, and the distances of the two nearest (bits).
 struct Nearest {
   std::size_t index = 0;
   int first = std::numeric_limits<int>::max();
   int second = std::numeric_limits<int>::max();
 
-  void see(std::size_t candidate, int distance) {
-    if (distance < first) {
-      second = first;
-      first = distance;
-      index = candidate;
-    } else {
-      second = std::min(second, distance);
-    }
-  }
   /// The ratio is in percent, so that the test is one of integers.
   [[nodiscard]] bool distinct(const config::PlaceFeaturesConfig& config) const {
     return first <= config.max_descriptor_bits &&
            100LL * first < static_cast<long long>(config.max_ratio_percent) * second;
   }
 };
+
+/// Of equally near features the first one.
+Nearest nearest_to(const OrbDescriptor& descriptor, std::span<const PlaceFeature> features) {
+  Nearest nearest;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const int distance = hamming_distance(descriptor, features[i].descriptor);
+    if (distance >= nearest.second) continue;
+    if (distance < nearest.first) {
+      nearest = {i, distance, nearest.first};
+    } else {
+      nearest.second = distance;
+    }
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -136,22 +142,21 @@ int hamming_distance(const OrbDescriptor& a, const OrbDescriptor& b) {
 std::vector<FeatureMatch> match_features(std::span<const PlaceFeature> query,
                                          std::span<const PlaceFeature> known,
                                          const config::PlaceFeaturesConfig& config) {
-  std::vector<Nearest> of_known(known.size());
-  std::vector<Nearest> of_query(query.size());
-  for (std::size_t q = 0; q < query.size(); ++q) {
-    for (std::size_t k = 0; k < known.size(); ++k) {
-      const int distance = hamming_distance(query[q].descriptor, known[k].descriptor);
-      of_query[q].see(k, distance);
-      of_known[k].see(q, distance);
-    }
-  }
   std::vector<FeatureMatch> matches;
   for (std::size_t q = 0; q < query.size(); ++q) {
-    const Nearest& nearest = of_query[q];
-    if (!known.empty() && nearest.distinct(config) && of_known[nearest.index].index == q)
+    const Nearest nearest = nearest_to(query[q].descriptor, known);
+    if (nearest.distinct(config) && nearest_to(known[nearest.index].descriptor, query).index == q)
       matches.push_back({q, nearest.index});
   }
   return matches;
+}
+
+std::size_t count_distinct(std::span<const PlaceFeature> query, std::span<const PlaceFeature> known,
+                           std::size_t step, const config::PlaceFeaturesConfig& config) {
+  std::size_t count = 0;
+  for (std::size_t q = 0; q < query.size(); q += step)
+    if (nearest_to(query[q].descriptor, known).distinct(config)) ++count;
+  return count;
 }
 
 }  // namespace fusebench::places

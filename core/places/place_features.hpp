@@ -50,4 +50,10 @@ struct FeatureMatch {
                                                        std::span<const PlaceFeature> known,
                                                        const config::PlaceFeaturesConfig& config);
 
+/// Number of every `step`-th query feature (step >= 1) that has a distinct nearest known feature: by the
+/// limits of match_features(), but in one direction.
+[[nodiscard]] std::size_t count_distinct(std::span<const PlaceFeature> query,
+                                         std::span<const PlaceFeature> known, std::size_t step,
+                                         const config::PlaceFeaturesConfig& config);
+
 }  // namespace fusebench::places

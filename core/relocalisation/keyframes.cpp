@@ -22,6 +22,7 @@ namespace fusebench::relocalisation {
 namespace {
 
 constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less, or look less alike, add nothing
+constexpr std::size_t kSampleStep = 4;   // every fourth feature of an image ranks the keyframes
 
 double angle_between_axes_rad(const SE3& a, const SE3& b) {
   const Vector3d axis_a = a.rotation * Vector3d::UnitZ();
@@ -157,6 +158,28 @@ void Keyframes::drop_most_crowded() {
   kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(crowded));
 }
 
+void Keyframes::complete_landmarks() {
+  for (Keyframe& keyframe : kept_) {
+    if (!keyframe.landmarks)
+      keyframe.landmarks = places::landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_,
+                                                config_.place_features, config_.relocalisation);
+  }
+}
+
+std::vector<std::size_t> Keyframes::most_matched(std::span<const places::PlaceFeature> query) const {
+  const auto max_count = static_cast<std::size_t>(config_.relocalisation.max_candidates);
+  std::vector<std::size_t> order(kept_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() <= max_count) return order;
+  std::vector<std::size_t> counts;
+  for (const Keyframe& keyframe : kept_)
+    counts.push_back(
+        places::count_distinct(query, keyframe.landmarks->features, kSampleStep, config_.place_features));
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t k) { return counts[k]; });
+  order.resize(max_count);
+  return order;
+}
+
 std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   check(grey.width == camera_.width_px && grey.height == camera_.height_px,
         "the image has the size of the camera's");
@@ -165,27 +188,20 @@ std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   const auto min_inliers = static_cast<std::size_t>(config_.relocalisation.min_inliers);
   if (query.size() < min_inliers) return {};
 
-  std::vector<std::vector<places::FeatureMatch>> matches;
-  matches.reserve(kept_.size());
-  for (Keyframe& keyframe : kept_) {
-    if (!keyframe.landmarks)
-      keyframe.landmarks = places::landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_,
-                                                config_.place_features, config_.relocalisation);
-    matches.push_back(places::match_features(query, keyframe.landmarks->features, config_.place_features));
-  }
-  std::vector<std::size_t> order(kept_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return matches[a].size() > matches[b].size(); });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(config_.relocalisation.max_candidates)));
+  complete_landmarks();
+  std::vector<std::pair<std::size_t, std::vector<places::FeatureMatch>>> candidates;
+  for (const std::size_t k : most_matched(query))
+    candidates.emplace_back(
+        k, places::match_features(query, kept_[k].landmarks->features, config_.place_features));
+  std::ranges::stable_sort(candidates, std::ranges::greater{}, [](const auto& c) { return c.second.size(); });
 
   std::vector<FoundPlace> found;
   double best_support = 0;
-  for (const std::size_t k : order) {
+  for (const auto& [k, matches] : candidates) {
     // So few matches cannot fit nearly as well as the best.
-    const auto count = static_cast<double>(matches[k].size());
-    if (matches[k].size() < min_inliers || count < config_.relocalisation.rival_support * best_support) break;
-    std::optional<FoundPlace> place = place_by(query, kept_[k], matches[k], camera_, config_);
+    const auto count = static_cast<double>(matches.size());
+    if (matches.size() < min_inliers || count < config_.relocalisation.rival_support * best_support) break;
+    std::optional<FoundPlace> place = place_by(query, kept_[k], matches, camera_, config_);
     if (!place) continue;
     place->keyframe = k;
     best_support = std::max(best_support, place->support);

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/types.hpp"
@@ -109,6 +110,10 @@ class Keyframes {
   [[nodiscard]] bool is_sharper(double blur_px, double blur_before_px) const;
   void drop_most_crowded();
   void complete(Keyframe& keyframe) const;
+  /// Finds the landmarks of keyframes that have none yet.
+  void complete_landmarks();
+  /// Indices of the keyframes (at most max_candidates) that match most of a sample of the features.
+  [[nodiscard]] std::vector<std::size_t> most_matched(std::span<const places::PlaceFeature> query) const;
   [[nodiscard]] std::vector<AlignmentCandidate> seen_by_prediction(const places::SmallImages& query,
                                                                    const SE3& T_world_camera) const;
   [[nodiscard]] std::vector<AlignmentCandidate> most_similar(const places::SmallImages& query) const;

@@ -171,6 +171,31 @@ TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
   EXPECT_EQ(keyframes[1].timestamp_ns, 20);
 }
 
+TEST(Keyframes, FindThePlaceAmongMoreThanAreMatchedWithAllFeatures) {
+  constexpr int kDirections = 32;
+  static_assert(kDirections > config::RelocalisationConfig::max_candidates);
+  Config config;
+  config.relocalisation.keyframe_angle_deg = 10;
+  Keyframes keyframes(small_camera(), config);
+  const auto T_room_direction = [](int direction) {
+    return SE3{so3_exp({0, radians(360.0 * direction / kDirections), 0}), {0, 0, 0}};
+  };
+  for (int direction = 0; direction < kDirections; ++direction)
+    offer(keyframes, T_room_direction(direction), direction);
+  ASSERT_GT(keyframes.size(), static_cast<std::size_t>(config::RelocalisationConfig::max_candidates));
+  int found_alone = 0;
+  for (int direction = 0; direction < kDirections; direction += 3) {
+    const SE3 T_room_query = T_room_direction(direction) * SE3{so3_exp({0.03, 0.02, 0.05}), {0.05, 0, 0.05}};
+    const GreyImage query = seen_from(T_room_query).grey;
+    if (one_keyframe(T_room_direction(direction)).find(query).empty()) continue;
+    ++found_alone;
+    const auto found = first_of(keyframes.find(query));
+    ASSERT_TRUE(found) << direction;
+    EXPECT_LT((found->T_world_camera.translation - T_room_query.translation).norm(), 0.02) << direction;
+  }
+  EXPECT_GE(found_alone, 5);
+}
+
 TEST(Keyframes, TellAllPlacesThatLookAlike) {
   // Two doors of a corridor: the same picture, three metres apart.
   const RgbdFrame door = seen_from({});
