@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs the commands of docs/tutorial.md again, and writes what they print, and the pictures that they make, into it.
+"""Runs the commands of README.md and docs/tutorial.md again, and writes what they print, and the pictures of the tutorial, into them.
 
 Usage: scripts/generate_tutorial.py [--keep FOLDER] [BINARY]
 
-BINARY (default: build/release/fusebench) is the program that the page calls fusebench. The commands run in order in one folder, a temporary
-one or FOLDER. It takes some minutes; pages are photographed by chromium, and figures are drawn by gnuplot, which have to be
-installed. What is done is written in the page itself:
+BINARY (default: build/release/fusebench) is the program that the pages call fusebench. The commands of a page run in order in one folder
+of their own, below a temporary one or FOLDER. It takes some minutes; pages are photographed by chromium, and figures are drawn by
+gnuplot, which have to be installed. What is done is written in the page itself:
   ```console                        lines "$ COMMAND" are run, the lines after them are replaced by what it prints; a command goes
                                     on after a \\ at a line's end. "$ COMMAND  # fails: N" has to end with exit code N
   <!-- file NAME -->                the code block after it is written to the file NAME
@@ -23,7 +23,8 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "tutorial.md"
+TUTORIAL = ROOT / "docs" / "tutorial.md"
+PAGES = [ROOT / "README.md", TUTORIAL]
 MOST_LINES = 24
 WIDEST = 150
 
@@ -125,16 +126,17 @@ def main(arguments):
         print(f"generate_tutorial: there is no binary {binary}; build it first (scripts/build.sh)", file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory() as temporary:
-        folder = keep or pathlib.Path(temporary) / "work"
-        folder.mkdir(parents=True, exist_ok=True)
-        tutorial = Tutorial(binary, folder)
-        text, pictures = tutorial.page(PAGE.read_text(encoding="utf-8"))
-        there = PAGE.parent / "tutorial"
-        shutil.rmtree(there, ignore_errors=True)
-        there.mkdir()
-        for picture in pictures:
-            shutil.copyfile(folder / "tutorial" / picture, there / picture)
-        PAGE.write_text(text, encoding="utf-8")
+        for page in PAGES:
+            folder = (keep or pathlib.Path(temporary)) / page.stem
+            folder.mkdir(parents=True, exist_ok=True)
+            text, pictures = Tutorial(binary, folder).page(page.read_text(encoding="utf-8"))
+            if page == TUTORIAL:
+                there = page.parent / "tutorial"
+                shutil.rmtree(there, ignore_errors=True)
+                there.mkdir()
+                for picture in pictures:
+                    shutil.copyfile(folder / "tutorial" / picture, there / picture)
+            page.write_text(text, encoding="utf-8")
     return 0
 
 

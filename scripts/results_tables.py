@@ -21,9 +21,11 @@ Several summaries, `real.json,real_peers.json`, are tables of the runs of all of
   peers=A,B       of view=worse: the systems that are compared with
   variants=A,B    only these systems, in this order; default: all, in the order of the summary
   split=NAME      of view=groups: only this split; default: held-out
+  origin=short    the line below the region has version and date alone, with a link to results/README.md; default: machine and
+                  command as well
 
 Numbers of replicates are their median [smallest, largest]. Below each region is what made the numbers: version, date, machine and
-command. Where a page has summaries of different versions, each region says so.
+command. Where a page has summaries of different versions, each region says so. Text is wrapped at 160 characters, commands are not.
 Keys, units and headings are those of `fusebench list metrics` (scripts/python/fusebench_runs/metrics.json).
 Exit code: 0 up to date or written; 1 with --check, pages differ; 2 usage, or a region or summary that cannot be read.
 """
@@ -35,6 +37,7 @@ import pathlib
 import re
 import statistics
 import sys
+import textwrap
 
 REGION = re.compile(r"(<!-- results: (\S+\.json(?:,\S+\.json)*)([^\n]*?) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 PARAMETERS = {
@@ -52,6 +55,7 @@ SHOWN_UNITS = {
     "1": (1, "", 2),
 }
 SHARES = {"coverage", "silent_share"}  # of frames, shown in %
+WIDTH = 160
 
 
 class PageError(Exception):
@@ -94,12 +98,15 @@ class Summary:
     def variants(self):
         return list(dict.fromkeys(run["variant"] for run in self.runs))
 
-    def made_by(self):
+    def made_by(self, short):
         origin = self.origin
-        text = f"`results/{self.name}`: version {', '.join(self.versions)}, {origin['date']}, {', '.join(origin['machines'])}; `{origin['command']}`."
+        text = f"`results/{self.name}`: version {', '.join(self.versions)}, {origin['date']}"
+        if short:
+            return text + "."
+        text += f", {', '.join(origin['machines'])}."
         if origin["absent"]:
             text += " Not run, since not present: " + ", ".join(f"`{item.split(':')[0]}`" for item in origin["absent"]) + "."
-        return text
+        return f"{wrapped(text)}\n\n    {command_lines(origin['command'])}"
 
 
 class SeveralSummaries:
@@ -115,8 +122,17 @@ class SeveralSummaries:
     def variants(self):
         return list(dict.fromkeys(run["variant"] for run in self.runs))
 
-    def made_by(self):
-        return "\n\n".join(part.made_by() for part in self.parts)
+    def made_by(self, short):
+        return (" " if short else "\n\n").join(part.made_by(short) for part in self.parts)
+
+
+def wrapped(text):
+    return "\n".join(textwrap.wrap(text, WIDTH, break_long_words=False, break_on_hyphens=False))
+
+
+def command_lines(command):
+    """A command as an indented block, its lines joined by backslashes."""
+    return " \\\n      ".join(textwrap.wrap(command, WIDTH - 10, break_long_words=False, break_on_hyphens=False))
 
 
 def spread(values):
@@ -180,7 +196,7 @@ def systems_view(summary, metrics, variants, _):
                     cell += f" ({bad[0]['status']}: {len(bad)} of {len(of_variant)})"
                 row.append(cell if of_variant else "")
             rows.append(row)
-        text += f"{metric.heading()}: {metric.definition}\n\n"
+        text += wrapped(f"{metric.heading()}: {metric.definition}") + "\n\n"
         text += table(["recording"] + [system_heading(summary, v) for v in variants], rows) + "\n"
     return text
 
@@ -245,7 +261,7 @@ def worse_view(summary, metrics, _, parameters):
                 if theirs and (own is None or is_better(metric, theirs, own)):
                     lines.append(f"{recording}: `{peer}` {shown(metric, values(peer))}, `{system}` {shown(metric, values(system))}")
         found = "; ".join(lines) if lines else "none"
-        text += f"- {metric.heading()}: {found}\n"
+        text += wrapped(f"- {metric.heading()}: {found}").replace("\n", "\n  ") + "\n"
     return f"Where a peer is better than `{system}` by more than the ranges of the replicates:\n\n{text}\n"
 
 
@@ -259,8 +275,10 @@ def parameters_of(text, where):
     view = parameters.get("view")
     if view not in PARAMETERS:
         raise PageError(f"{where}: view={view} (allowed: {' | '.join(PARAMETERS)})")
-    for key in parameters.keys() - PARAMETERS[view] - {"view"}:
+    for key in parameters.keys() - PARAMETERS[view] - {"view", "origin"}:
         raise PageError(f"{where}: view={view} has no '{key}' (allowed: {', '.join(sorted(PARAMETERS[view])) or 'none'})")
+    if parameters.get("origin", "short") != "short":
+        raise PageError(f"{where}: origin={parameters['origin']} (allowed: short)")
     return parameters
 
 
@@ -296,10 +314,15 @@ def new_page(path, root, metrics, summaries):
 
     def replaced(region):
         summary = summaries[region.group(2)]
-        content = content_of(summary, parameters_of(region.group(3), where), metrics, where)
-        footer = summary.made_by()
+        parameters = parameters_of(region.group(3), where)
+        content = content_of(summary, parameters, metrics, where)
+        short = "origin" in parameters
+        footer = summary.made_by(short)
+        if short:
+            link = pathlib.PurePath(*[".."] * (len(where.parts) - 1), "results/README.md")
+            footer = wrapped(f"{footer} [Machine, commands and all numbers]({link}).")
         if len(versions) > 1:
-            footer += " **Tables of this page are of different versions.**"
+            footer += "\n\n**Tables of this page are of different versions.**"
         return f"{region.group(1)}\n{content}{footer}\n\n{region.group(5)}"
 
     return text, REGION.sub(replaced, text)

@@ -9,7 +9,7 @@ Usage: scripts/study_growth.sh [PART...] [--binary FILE] [--out DIR] [--recordin
                                [--recordings-only]
 
 Simulates a furnished room of about 5 x 5 x 2.8 m in which a hand-held camera turns around, runs `full` over it with one
-thread, and prints Markdown tables (docs/performance.md has the conclusions). Parts (default: all of them):
+thread, and prints Markdown tables (docs/performance.md has the summary). Parts (default: all of them):
   flat   N frames, 480 x 360 (at 640 x 480 they would be 4 GB; at 320 x 240 depth is so noisy that the map drifts and goes on
          growing); 500 frames a turn, so that every 500 show the same: times of each turn, and how they grow from turn to
          turn once all has been seen twice

@@ -46,7 +46,10 @@ region() { printf '<!-- results: %s -->\n%s<!-- end of results -->' "$1" "${2:-}
 
 expect 0 '| desk | 1.50 [1.00, 2.00] (lost: 1 of 3) | **0.50** | 3.00 |' "$(region 'a.json view=systems values=ate_rmse_m')"
 expect 0 '| recording | `no-imu` | `peer` | `full`, synthetic IMU |' "$(region 'a.json view=systems values=ate_rmse_m')"
-expect 0 'version 1.0, 2026-01-01, a CPU; `fusebench bench x --data DATA`. Not run, since not present: `gone`.' "$(region 'a.json view=criteria')"
+expect 0 'version 1.0, 2026-01-01, a CPU. Not run, since not present: `gone`.' "$(region 'a.json view=criteria')"
+expect 0 '    fusebench bench x --data DATA' "$(region 'a.json view=criteria')"
+expect 0 'version 1.0, 2026-01-01. [Machine, commands and all numbers](../results/README.md).' "$(region 'a.json view=criteria origin=short')"
+expect 2 'origin=long (allowed: short)' "$(region 'a.json view=criteria origin=long')"
 expect 0 '| good | PASS | 1 | <= 2 | 3 |' "$(region 'a.json view=criteria')"
 expect 0 '- `ate_rmse_m` [cm]: desk: `peer` 0.50, `no-imu` 1.50 [1.00, 2.00]' "$(region 'a.json view=worse values=ate_rmse_m system=no-imu peers=peer')"
 expect 0 '- `ate_rmse_m` [cm]: none' "$(region 'a.json view=worse values=ate_rmse_m system=peer peers=no-imu')"

@@ -140,7 +140,7 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   console::add_json_flag(*table1, options.controls.json);
   table1->footer(
       "A reading is one interpretation of definitions that the paper leaves open (direct method, "
-      "error);\ndocs/table1.md explains them. Recordings that are not under --data are replaced by simulated "
+      "error);\ndocs/paper.md explains them. Recordings that are not under --data are replaced by simulated "
       "ones,\nwhich the output labels. A finished run is not repeated.");
   return table1;
 }
