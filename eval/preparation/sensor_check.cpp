@@ -124,7 +124,9 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
                        [&](const Finding& finding) { return is_of_sensors(finding, with_imu); });
   if (inspected.registration) result.depth_camera = measured_depth_camera(*inspected.registration);
   if (result.depth_camera && result.depth_camera->is_used)
-    std::erase_if(result.findings, [](const Finding& f) { return f.code == "depth-misregistered"; });
+    std::erase_if(result.findings, [](const Finding& f) {
+      return f.code == "depth-misregistered" || f.code == "focal-length";  // by depth of the wrong camera
+    });
   if (with_imu && inspected.imu && is_independent_of_truth(*inspected.imu))
     result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
   // Without ground truth the inspection has compared the IMU with the images already.

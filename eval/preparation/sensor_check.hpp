@@ -26,7 +26,7 @@ struct SensorCheck {
   /// these do not make it observable. A synthetic IMU has the error of the ground truth's clock.
   std::optional<double> imu_time_offset_s;
   /// By the edges of depth and colour; nothing where depth has too few edges. If it is used, the findings do
-  /// not have depth-misregistered.
+  /// not have depth-misregistered and focal-length, which were found with the depth as it was read.
   std::optional<MeasuredDepthCamera> depth_camera;
 };
 
