@@ -10,7 +10,7 @@ namespace fusebench::health {
 
 namespace {
 
-/// Reorders the values; 0 if there are none.
+/// Reorders the values. Returns 0 if there are none.
 double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

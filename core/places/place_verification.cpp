@@ -28,7 +28,7 @@ std::vector<SeenPoint> seen_points(const Appearance& known, const Appearance& qu
   return seen;
 }
 
-/// By features; pair.reason says why not.
+/// Pose by features; on failure sets pair.reason.
 std::optional<RelativePose> pose_by_features(const Appearance& known, const Appearance& query,
                                              const PinholeCamera& camera, const config::Config& config,
                                              VerifiedPair& pair) {
@@ -48,7 +48,7 @@ std::optional<RelativePose> pose_by_features(const Appearance& known, const Appe
   return RelativePose{pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance};
 }
 
-/// By depth alone; pair.reason says why not.
+/// Pose by depth alone; on failure sets pair.reason.
 std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallImages& query,
                                           const SE3& T_known_query, double reach_m,
                                           const PinholeCamera& camera, const config::Config& config,
@@ -79,7 +79,7 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
   return aligned;
 }
 
-/// What the depth of either says against the pose; empty if nothing.
+/// Contradiction of the pose by the depth of either place; empty if there is none.
 std::string contradiction_of_depth(const SmallImages& known, const SmallImages& query,
                                    const PinholeCamera& camera, const config::Config& config,
                                    VerifiedPair& pair) {
@@ -99,7 +99,7 @@ std::string contradiction_of_depth(const SmallImages& known, const SmallImages& 
   return {};
 }
 
-/// The pair at that pose, if the depth of both agrees with it.
+/// Sets the result of the pair at that pose, if the depth of both agrees with it.
 void conclude(const RelativePose& pose, const SmallImages& known, const SmallImages& query,
               const PinholeCamera& camera, const config::Config& config, VerifiedPair& pair) {
   pair.T_known_query = pose.T_known_query;
@@ -142,7 +142,7 @@ VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const
           .overlap < config.loops.min_consistent_share)
     return by_features;
   VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, 0, camera, config);
-  // Where depth was aligned, what it contradicts is the reason, and before, what features lacked as well.
+  // The reason is that of depth if it was aligned; otherwise that of the features, followed by that of depth.
   if (!by_depth.by_depth_alone) by_depth.reason = by_features.reason + "; " + by_depth.reason;
   return with_counts(std::move(by_depth));
 }

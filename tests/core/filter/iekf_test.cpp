@@ -174,13 +174,13 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
 using ByReadout = Eigen::Matrix<double, 3, kReadoutSize>;
 class ReadOutMeasurement final : public PoseMeasurement {
  public:
-  /// undone: errors that the images are free of already.
+  /// compensated: errors that the images are free of already.
   ReadOutMeasurement(Vector3d z, double sigma, const ByReadout& by_readout,
-                     const ReadoutVector& undone = ReadoutVector::Zero())
-      : z_(z - by_readout * undone),
+                     const ReadoutVector& compensated = ReadoutVector::Zero())
+      : z_(z - by_readout * compensated),
         information_(1.0 / (sigma * sigma)),
         by_readout_(by_readout),
-        undone_(undone) {}
+        compensated_(compensated) {}
   MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
     const Vector3d error = poses.T_world_imu_by_model.translation - z_;
     MeasurementQuadratic q;
@@ -190,7 +190,7 @@ class ReadOutMeasurement final : public PoseMeasurement {
     q.readout_by_model.with_pose.bottomRows<3>() = information_ * by_readout_;
     q.readout_by_model.information = information_ * by_readout_.transpose() * by_readout_;
     q.readout_by_model.gradient = information_ * by_readout_.transpose() * error;
-    q.undone = undone_;
+    q.compensated = compensated_;
     return q;
   }
   double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
@@ -202,7 +202,7 @@ class ReadOutMeasurement final : public PoseMeasurement {
   Vector3d z_;
   double information_;
   ByReadout by_readout_;
-  ReadoutVector undone_;
+  ReadoutVector compensated_;
 };
 
 /// z = p + by_readout * errors + noise, by the textbook. The errors of the rate are those against what is
@@ -258,9 +258,9 @@ TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
   const MatrixXd covariance =
       testing::carried(chart_transport(prior.mean, StateVector(expected.delta)),
                        testing::after_update(prior.covariance, expected.K, expected.H));
-  ReadoutVector undone;
-  undone << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
-  for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
+  ReadoutVector compensated;
+  compensated << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
+  for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), compensated}) {
     ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
     EXPECT_TRUE(result.converged);

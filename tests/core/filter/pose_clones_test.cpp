@@ -45,8 +45,8 @@ GaussianState uncertain_at(const SE3& T, double variance) {
 
 /// A frame that is fused, and that the next patches are cut from.
 GaussianState cut_and_fused(const GaussianState& state, const ModelDrift& drift,
-                            const UndoneReadout& undone = {}) {
-  return cloned_as_reference(fused_into_model(state, drift, undone), undone);
+                            const CompensatedReadout& compensated = {}) {
+  return cloned_as_reference(fused_into_model(state, drift, compensated), compensated);
 }
 
 TEST(PoseClones, AnAnchorGainsTheErrorOfItsOwnImage) {
@@ -197,19 +197,19 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
   EXPECT_EQ(next.mean.reference_rate_offset.norm(), 0.0);
 }
 
-TEST(PoseClones, TheModelKeepsTheReadoutThatWasUndoneInItsFrames) {
-  UndoneReadout undone;
-  undone.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
-  undone.timing_s = {0.021, 0.03, -0.01};
-  const GaussianState first = cut_and_fused(known_at(kTo), {.share = 1}, undone);
-  EXPECT_LT((first.mean.model_readout.rate - undone.rate).norm(), 1e-15);
-  EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * undone.rate).norm(), 1e-15);
-  EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * undone.rate).norm(), 1e-15);
+TEST(PoseClones, TheModelKeepsTheReadoutThatWasCompensatedInItsFrames) {
+  CompensatedReadout compensated;
+  compensated.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
+  compensated.timing_s = {0.021, 0.03, -0.01};
+  const GaussianState first = cut_and_fused(known_at(kTo), {.share = 1}, compensated);
+  EXPECT_LT((first.mean.model_readout.rate - compensated.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * compensated.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * compensated.rate).norm(), 1e-15);
   EXPECT_EQ(first.mean.reference_color_readout_s, 0.021);
   // A frame at rest averages half of it away.
   const GaussianState second = cut_and_fused(first, {.share = 0.5});
-  EXPECT_LT((second.mean.model_readout.rate - 0.5 * undone.rate).norm(), 1e-15);
-  EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * undone.rate).norm(), 1e-15);
+  EXPECT_LT((second.mean.model_readout.rate - 0.5 * compensated.rate).norm(), 1e-15);
+  EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * compensated.rate).norm(), 1e-15);
   EXPECT_EQ(second.mean.reference_color_readout_s, 0.0);
 }
 

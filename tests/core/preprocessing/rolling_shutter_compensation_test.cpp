@@ -128,7 +128,7 @@ struct Motion {
 
 class RollingShutter : public ::testing::TestWithParam<Motion> {};
 
-TEST_P(RollingShutter, IsUndone) {
+TEST_P(RollingShutter, IsCompensated) {
   const CameraVelocity& velocity = GetParam().velocity;
   RgbdFrame before = rolling_frame(velocity, kTiming);
   color_in(before);
