@@ -9,7 +9,7 @@
 
 namespace fusebench::images {
 
-/// Writes a PNG of one or three channels, whatever the file's name ends with. Not written: the reason.
+/// Writes a PNG of one or three channels, whatever the extension of the file. On failure, returns the reason.
 [[nodiscard]] tl::expected<void, std::string> write_png_file(const std::filesystem::path& file,
                                                              const PixelView& image);
 

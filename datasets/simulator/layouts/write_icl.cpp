@@ -10,7 +10,7 @@ namespace fusebench::simulator::layouts {
 
 namespace {
 
-constexpr double kStartOffset_m = -2.25;  // of the published trajectories, along the first camera's axis
+constexpr double kStartOffset_m = -2.25;  // of the published trajectories, along the axis of the first camera
 
 SE3 pose_at(const Trajectory& truth, std::int64_t time_ns) {
   const auto found = std::ranges::lower_bound(truth, time_ns, {}, &StampedPose::timestamp_ns);
