@@ -3,10 +3,10 @@
 // J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 omits the prior term after the first iteration; here it is in
-// every iteration (iekf.prior_in_every_iteration). A measurement depends on the error state d only through B
-// d in R^28 (pose_clones.hpp). The optimum is therefore x_prior (+) P B^T y for some y in R^28. The update
-// iterates on y, never inverts P (which may be singular), and moves velocity, biases and gravity through
-// their correlations.
+// every iteration (iekf.prior_in_every_iteration). A measurement depends on the error state d only
+// through B d in R^28 (pose_clones.hpp). The optimum is therefore x_prior (+) P B^T y for some y in R^28. The
+// update iterates on y, never inverts P (which may be singular), and moves velocity, biases and gravity
+// through their correlations.
 #pragma once
 
 #include "core/config/groups/config_fwd.hpp"
@@ -81,8 +81,8 @@ struct MeasurementQuadratic {
 /// there. For estimators that have their own pose and timing.
 struct PoseTimingQuadratic {
   Vector3d timing_s = Vector3d::Zero();  ///< point of linearisation, as SensorErrors::timing_s()
+  /// Information shared with the tangent of the pose.
   Eigen::Matrix<double, kPoseSize, kTimingSize> with_pose =
-      /// information shared with the tangent of the pose
       Eigen::Matrix<double, kPoseSize, kTimingSize>::Zero();
   Matrix3d information = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
