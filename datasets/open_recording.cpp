@@ -113,10 +113,10 @@ Error unrecognised(const std::filesystem::path& place) {
   for (const RecordingFormat& format : formats())
     known.push_back(fmt::format("{} (files {})", format.name, fmt::join(format.files, ", ")));
   return {ErrorCode::data_missing,
-          fmt::format("{}: not a recording of a known format; known are {}", place.string(),
+          fmt::format("{}: not a recording of a supported format; supported are {}", place.string(),
                       fmt::join(known, "; ")),
-          "name the folder that holds these files, or say --format; docs/datasets.md has each of them, and "
-          "docs/own-camera.md how to make one of your own images"};
+          "pass the folder that contains these files, or --format; docs/datasets.md describes the formats, "
+          "docs/own-camera.md recordings of your own camera"};
 }
 
 /// Files that may lie beside a recording are in its folder.

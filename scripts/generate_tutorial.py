@@ -30,7 +30,8 @@ WIDEST = 150
 
 def printed(text):
     """Lines as the page shows them: few, and not too long."""
-    lines = [line.rstrip() for line in text.splitlines()]
+    progress = "... "  # begins the lines of long work, whose times differ
+    lines = [line.rstrip() for line in text.splitlines() if not line.startswith(progress)]
     while lines and not lines[-1]:
         lines.pop()
     if len(lines) > MOST_LINES:

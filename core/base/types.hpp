@@ -28,6 +28,8 @@ struct PinholeCamera {
   double cx_px = 0;
   double cy_px = 0;
 
+  [[nodiscard]] bool operator==(const PinholeCamera&) const = default;
+
   /// Pixel coordinates of a point in the camera frame (metres, z > 0).
   [[nodiscard]] Vector2d project(const Vector3d& point_camera) const {
     return {fx_px * point_camera.x() / point_camera.z() + cx_px,

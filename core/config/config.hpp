@@ -1,5 +1,5 @@
 // Every option of the estimator, declared once: name, default, range and one sentence (with its source). The
-// groups are in core/config/groups, in the order of the data's way.
+// groups are in core/config/groups, in the order of processing.
 // The file reader, --set, range checks, `fusebench config`, docs/configuration.md and the configuration hash
 // all derive from the visit() of each struct (see options.hpp). A field without an option does not compile.
 #pragma once

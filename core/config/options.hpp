@@ -10,7 +10,7 @@
 
 namespace fusebench::config {
 
-/// A value as it comes from a file or the command line, before it meets an option.
+/// A value from a file or the command line, before it is assigned to an option.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
 /// One option with its current value, ready to print.
@@ -19,12 +19,12 @@ struct OptionRow {
   std::string type;      ///< "integer", "number", "flag" or "choice"
   std::string value;     ///< as a TOML value, shortest round trip
   std::string range;     ///< e.g. "1 .. 200", "true | false", "imu | constant_velocity"
-  std::string sentence;  ///< what it does, with its source
+  std::string sentence;  ///< its effect, with the source
 };
 
 namespace detail {
 
-/// Converts to anything: counts the fields of an aggregate by trying longer and longer initialisers.
+/// Converts to any type: counts the fields of an aggregate by initialisers of increasing length.
 struct AnyField {
   template <class T>
   constexpr operator T() const;  // never defined: only its type is used

@@ -1,5 +1,5 @@
-// A TOML file as a flat list of dotted keys with their lines (the one place that knows the parser), and what
-// readers ask of one entry.
+// A TOML file as a flat list of dotted keys with their lines, and typed access to an entry. The only unit
+// that uses the parser.
 #pragma once
 
 #include <fmt/format.h>
@@ -39,14 +39,14 @@ struct TomlDocument {
 };
 
 /// Reads a TOML file. Errors: data_missing if it cannot be opened; configuration, with file:line, for bad
-/// syntax, for what nothing here takes (dates, lists of tables and other values, quoted keys that are no
-/// plain names), and for more than 1 MiB.
+/// syntax, for unsupported values (dates, lists of tables and other values, quoted keys that are not plain
+/// names), and for more than 1 MiB.
 [[nodiscard]] Result<TomlDocument> read_toml(const std::filesystem::path& file);
 
-/// The same for a text; `name` stands for the file in messages.
+/// Parses a text like read_toml(); `name` is the file name in messages.
 [[nodiscard]] Result<TomlDocument> parse_toml(std::string_view text, const std::string& name);
 
-/// How a value is written in TOML: true, 8, 0.5, "text"; doubles with the shortest text that reads back the
+/// A value as TOML text: true, 8, 0.5, "text"; doubles with the shortest text that reads back the
 /// same.
 [[nodiscard]] std::string to_toml(const OptionValue& value);
 

@@ -1,7 +1,8 @@
 #include "core/health/frame_report.hpp"
 
-#include <algorithm>
+#include <utility>
 
+#include "core/base/upper_median.hpp"
 #include "core/config/groups/filter_config.hpp"
 #include "core/config/groups/health_config.hpp"
 #include "core/filter/pose_clones.hpp"
@@ -10,13 +11,8 @@ namespace fusebench::health {
 
 namespace {
 
-/// Reorders the values. Returns 0 if there are none.
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+/// 0 if there are no values.
+double median(std::vector<double> values) { return values.empty() ? 0 : upper_median(std::move(values)); }
 
 }  // namespace
 
@@ -65,9 +61,9 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
   }
   if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
   if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
-  report.patch_motion_px = median(motion_px);
+  report.patch_motion_px = median(std::move(motion_px));
   if (measurement.color_is_new() && correlations.size() >= static_cast<std::size_t>(iekf.min_patches))
-    report.correlation = median(correlations);
+    report.correlation = median(std::move(correlations));
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();
   report.certainty = certainty_of(result.posterior);

@@ -41,17 +41,6 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
   return error;
 }
 
-/// Syncs to the disk, so that it survives a power failure. EINVAL and ENOTSUP mean that the file system
-/// cannot sync folders and are ignored; any other error is returned.
-std::error_code sync_to_disk(const fs::path& place) {
-  const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return {errno, std::generic_category()};
-  const int failed = fsync(descriptor) == 0 ? 0 : errno;
-  close(descriptor);
-  if (failed == EINVAL || failed == ENOTSUP) return {};
-  return {failed, std::generic_category()};
-}
-
 /// All of the file system that holds a folder: what a folder of a thousand images takes 50 times longer for
 /// file by file.
 std::error_code sync_file_system(const fs::path& folder) {
@@ -98,6 +87,15 @@ fs::path folder_of(const fs::path& path) {
 }
 
 }  // namespace
+
+std::error_code sync_to_disk(const fs::path& place) {
+  const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {errno, std::generic_category()};
+  const int failed = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  if (failed == EINVAL || failed == ENOTSUP) return {};
+  return {failed, std::generic_category()};
+}
 
 Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
   StagedFolder folder;

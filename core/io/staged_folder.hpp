@@ -46,6 +46,10 @@ class StagedFolder {
   std::vector<TemporaryMark> marks_;            // of the temporary folder and the parents
 };
 
+/// Syncs a file or folder to the disk, so that it survives a power failure. EINVAL and ENOTSUP mean that the
+/// file system cannot sync it and are ignored; any other error is returned.
+[[nodiscard]] std::error_code sync_to_disk(const std::filesystem::path& place);
+
 /// Syncs the names on a path to the disk: its folder, and then those above, each once. Without them, what is
 /// in the folder would not be there after a power failure. Ends at the first error of its folder, or of one
 /// that holds the name of a `made` folder (parents of `path`, spelt as there), and returns it; others above

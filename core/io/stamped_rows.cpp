@@ -61,9 +61,24 @@ Result<void> for_each_row(const std::filesystem::path& file, std::string_view co
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected {})", file.string(), columns));
 }
 
+Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
+                          const std::function<Result<void>(const TextTable& table)>& row,
+                          std::vector<std::string>& warnings) {
+  bool is_first = true;
+  return for_each_row(file, columns, [&](const TextTable& table) -> Result<void> {
+    if (is_first) table.warn_of_more_columns(warnings);
+    is_first = false;
+    return row(table);
+  });
+}
+
 Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
-                                  TimeOrder order, const StampedRow& row, TimeUnit unit) {
-  return read_stamped_rows(file, columns, order, row, [unit](const TextTable&) { return unit; });
+                                  TimeOrder order, const StampedRow& row, TimeUnit unit,
+                                  std::vector<std::string>* warnings) {
+  return read_stamped_rows(file, columns, order, row, [&](const TextTable& first) {
+    if (warnings != nullptr) first.warn_of_more_columns(*warnings);
+    return unit;
+  });
 }
 
 Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
@@ -74,6 +89,7 @@ Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string
     if (unit != TimeUnit::seconds)
       warnings.push_back(fmt::format("{}:{}: stamps are read as {}, by their size", file.string(),
                                      first.line(), to_string(unit)));
+    first.warn_of_more_columns(warnings);
     return unit;
   });
 }

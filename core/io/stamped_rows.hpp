@@ -39,18 +39,25 @@ class TimeOrderCheck {
 [[nodiscard]] Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
                                         const std::function<Result<void>(const TextTable& table)>& row);
 
+/// The same; a warning counts columns behind the named ones, which "..." as the last name allows.
+[[nodiscard]] Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
+                                        const std::function<Result<void>(const TextTable& table)>& row,
+                                        std::vector<std::string>& warnings);
+
 /// What is done with one row; column 0 is its time.
 using StampedRow = std::function<Result<void>(const TextTable& table, std::int64_t time_ns)>;
 
 /// Calls row for every row of the table, in the order of the file, up to the first error. columns: names,
 /// separated by blanks, the first one the time in the given unit. Errors: data_missing; data_corrupt (those
-/// of TextTable, the order in time, a table without rows); those of row.
+/// of TextTable, the order in time, a table without rows); those of row. warnings, where they are given,
+/// count columns behind the named ones.
 [[nodiscard]] Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
                                                 TimeOrder order, const StampedRow& row,
-                                                TimeUnit unit = TimeUnit::seconds);
+                                                TimeUnit unit = TimeUnit::seconds,
+                                                std::vector<std::string>* warnings = nullptr);
 
 /// The same, in the unit of the first stamp by its size (unit_by_size()), with a warning if that is not the
-/// second.
+/// second; a warning counts columns behind the named ones.
 [[nodiscard]] Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
                                                 TimeOrder order, const StampedRow& row,
                                                 std::vector<std::string>& warnings);

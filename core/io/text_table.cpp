@@ -28,6 +28,19 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+bool is_separator(char c) { return c == ',' || is_blank(c); }
+
+/// Takes the next field away; quotes around it are no part of it, and separators between them are.
+std::string_view take_field(std::string_view& rest) {
+  const std::size_t quote = rest.starts_with('"') ? rest.find('"', 1) : std::string_view::npos;
+  const bool quoted =
+      quote != std::string_view::npos && (quote + 1 == rest.size() || is_separator(rest[quote + 1]));
+  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest, is_separator) - rest.begin());
+  const std::string_view field = quoted ? rest.substr(1, quote - 1) : rest.substr(0, end);
+  rest.remove_prefix(quoted ? quote + 1 : end);
+  return field;
+}
+
 /// A parsed decimal number: value = 0.d1 d2 d3 ... * 10^point.
 struct Decimal {
   bool negative = false;
@@ -119,7 +132,7 @@ Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit) {
   if (fits && digit(kept) >= 5) fits = value++ < kMaxTime_ns;
   if (!fits) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("time '{}' in {} is beyond 146 years (half of what 64-bit nanoseconds hold)",
+                fmt::format("time '{}' in {} is beyond 146 years (half of the range of 64-bit nanoseconds)",
                             printable(text), to_string(unit)),
                 fmt::format("times are {} here; is the file in another unit?", to_string(unit)));
   }
@@ -144,10 +157,7 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields) 
   std::string_view rest = trim(line);
   if (rest.empty()) return;
   while (true) {
-    std::size_t length = 0;
-    while (length < rest.size() && rest[length] != ',' && !is_blank(rest[length])) ++length;
-    fields.push_back(rest.substr(0, length));
-    rest.remove_prefix(length);
+    fields.push_back(take_field(rest));
     if (rest.empty()) return;
     while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
     if (!rest.empty() && rest.front() == ',') {
@@ -253,8 +263,8 @@ Result<bool> TextTable::next() {
     if (text_.find('\0') != std::string_view::npos) {
       return fail_here("not a text file (zero byte)", "tables are UTF-8 or ASCII text");
     }
-    if (text_.empty() || text_.front() == '#' || line_ == left_out_line_) continue;
     split_fields(text_, fields_);
+    if (fields_.empty() || fields_.front().starts_with('#') || line_ == left_out_line_) continue;
     if (first_row_line_ == 0) first_row_line_ = line_;
     if (!has_expected_columns())
       return fail_here(fmt::format("expected {}, got {}", expectation(), fields_.size()), hint_about_row());
@@ -282,6 +292,14 @@ Result<void> TextTable::numbers(std::size_t first_column, std::span<double> valu
     values[i] = *value;
   }
   return {};
+}
+
+void TextTable::warn_of_more_columns(std::vector<std::string>& warnings,
+                                     std::optional<std::size_t> used) const {
+  const std::size_t first = used.value_or(columns_.size());
+  if (size() > first)
+    warnings.push_back(fmt::format("{}:{}: {} columns after the first {} are not used", file_.string(), line_,
+                                   size() - first, first));
 }
 
 }  // namespace fusebench::io

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,13 +31,13 @@ enum class TimeUnit { nanoseconds = 0, microseconds = 3, milliseconds = 6, secon
 
 /// Splits at white space and commas: white space with at most one comma in it is one separator, so "1, 2" has
 /// two fields and "1,,2" three. White space at the ends does not count, nor does one comma after the last
-/// value: "1,2," has two fields, and "1,," three.
+/// value: "1,2," has two fields, and "1,," three. Quotes around a field are no part of it.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 /// Reads one table row by row; only one line is in memory. A byte order mark, carriage returns, blank lines
-/// and comments (first character '#') are skipped. Every row must have exactly the named columns. The last
-/// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"): a row may then do without all of these.
-/// After
+/// and comments (a first field that begins with '#') are skipped. Every row must have exactly the named
+/// columns. The last ones may stand in brackets ("timestamp gx gy gz [ax ay az]"): a row may then do without
+/// all of these. After
 /// "..." as the last name ("timestamp tx ty tz ...") rows may have more columns, all rows as many.
 class TextTable {
  public:
@@ -62,6 +63,10 @@ class TextTable {
   [[nodiscard]] Result<double> number(std::size_t column) const;
   /// Fills values from as many neighbouring columns.
   [[nodiscard]] Result<void> numbers(std::size_t first_column, std::span<double> values) const;
+
+  /// Adds a warning, "file:line: 3 columns after the first 8 are not used", if the current row has more than
+  /// `used` columns; without `used`, more than the named ones.
+  void warn_of_more_columns(std::vector<std::string>& warnings, std::optional<std::size_t> used = {}) const;
 
   /// An error about the current row: "file:line: what", where `what` may quote the row (see printable.hpp).
   [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;

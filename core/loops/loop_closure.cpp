@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/upper_median.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
@@ -23,9 +24,7 @@ double median_depth_m(const DepthImage& depth_m) {
   std::vector<float> measured;
   std::ranges::copy_if(depth_m.data, std::back_inserter(measured), [](float m) { return m > 0; });
   if (measured.empty()) return 0;
-  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
-  std::ranges::nth_element(measured, middle);
-  return static_cast<double>(*middle);
+  return static_cast<double>(upper_median(std::move(measured)));
 }
 
 }  // namespace

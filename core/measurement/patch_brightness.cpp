@@ -5,8 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "core/base/upper_median.hpp"
 #include "core/config/groups/residuals_config.hpp"
 #include "core/measurement/patch_outcome.hpp"
 
@@ -69,9 +71,7 @@ double common_gain(const patches::LevelLanes& level, const GreyImage& image) {
     if (count > 0 && seen > least && expected > least) gains.push_back(seen / expected);
   }
   if (gains.size() < kFewestPatches) return 1;
-  const auto middle = gains.begin() + static_cast<std::ptrdiff_t>(gains.size() / 2);
-  std::ranges::nth_element(gains, middle);
-  return *middle;
+  return upper_median(std::move(gains));
 }
 
 }  // namespace fusebench::measurement

@@ -26,4 +26,10 @@ Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
       "convert the mesh to PLY");
 }
 
+PreciseMesh scaled(PreciseMesh mesh, double unit_m) {
+  for (Vector3d& vertex : mesh.vertices) vertex *= unit_m;
+  for (float& radius_m : mesh.radii_m) radius_m *= static_cast<float>(unit_m);
+  return mesh;
+}
+
 }  // namespace fusebench::mesh

@@ -12,4 +12,7 @@ namespace fusebench::mesh {
 /// ending; those of read_ply() and read_obj().
 [[nodiscard]] Result<PreciseMesh> read_mesh(const std::filesystem::path& file);
 
+/// A mesh or surfels in metres, of one of which a unit is unit_m: vertices and radii are multiplied.
+[[nodiscard]] PreciseMesh scaled(PreciseMesh mesh, double unit_m);
+
 }  // namespace fusebench::mesh

@@ -102,6 +102,8 @@ ColumnName taken_apart(std::string_view name) {
     parts.unit = parts.words.back();
     parts.words.pop_back();
     if (parts.words.back() == "in" && parts.words.size() >= 2) parts.words.pop_back();
+  } else if (parts.words.size() == 1 && parts.words[0].size() > 1 && time_unit(parts.words[0])) {
+    parts = {{"t"}, parts.words[0]};  // "sec"
   }
   return parts;
 }
@@ -172,18 +174,21 @@ struct StampColumn {
   Words words;
 };
 
-/// The best names first. Error data_corrupt: no name, or the best one in two units. Messages of ROS count
-/// whole seconds in one column, and the nanoseconds beyond them in the next one: neither is a stamp.
-Result<void> sort_stamps(std::vector<StampColumn>& stamps, std::span<const std::string> names) {
+/// The best names first. True if these are the seconds of the stamp, and then its fraction. Error
+/// data_corrupt: no name, or the best one in two other units.
+Result<bool> sort_stamps(std::vector<StampColumn>& stamps, std::span<const std::string> names) {
   if (stamps.empty()) return fail(ErrorCode::data_corrupt, "no column is named as the stamp (timestamp)");
   std::ranges::stable_sort(stamps, std::ranges::greater(), &StampColumn::rank);
-  const StampColumn& best = stamps.front();
-  const auto half = std::ranges::find_if(
-      stamps, [&](const StampColumn& other) { return other.words == best.words && other.unit != best.unit; });
-  if (half == stamps.end()) return {};
+  const auto half = std::ranges::find_if(stamps, [&](const StampColumn& other) {
+    return other.words == stamps[0].words && other.unit != stamps[0].unit;
+  });
+  if (half == stamps.end()) return false;
+  std::iter_swap(stamps.begin() + 1, half);
+  if (stamps[1].unit == io::TimeUnit::seconds) std::swap(stamps[0], stamps[1]);
+  if (stamps[0].unit == io::TimeUnit::seconds && stamps[1].unit) return true;
   return fail(ErrorCode::data_corrupt,
-              fmt::format("the stamp is in two columns: {} and {}", printable(names[best.column]),
-                          printable(names[half->column])),
+              fmt::format("the stamp is in two columns: {} and {}", printable(names[stamps[0].column]),
+                          printable(names[stamps[1].column])),
               "write each stamp into one column, in one unit");
 }
 
@@ -229,59 +234,16 @@ class PoseNumbers {
   std::array<Column, 7> columns_;
 };
 
-/// Brackets belong to the name before them.
-std::vector<std::string> split_at_blanks(std::string_view text) {
-  std::vector<std::string> names;
-  int depth = 0;
-  bool begins = true;
-  for (const char c : text) {
-    const bool opens = c == '[' || c == '(' || c == '{';
-    if (depth == 0 && (c == ' ' || c == '\t' || c == '\r')) {
-      begins = true;
-      continue;
-    }
-    if (begins && !(opens && !names.empty())) names.emplace_back();
-    if (begins && opens && !names.empty() && !names.back().empty()) names.back() += ' ';
-    begins = false;
-    if (opens) ++depth;
-    if (c == ']' || c == ')' || c == '}') depth = std::max(0, depth - 1);
-    names.back() += c;
-  }
-  return names;
-}
-
-std::string_view without(std::string_view text, std::string_view characters) {
-  const std::size_t begin = text.find_first_not_of(characters);
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(characters) + 1 - begin);
-}
-
 }  // namespace
 
 std::size_t PoseColumns::needed() const {
-  return 1 + std::max({stamp, *std::ranges::max_element(position), *std::ranges::max_element(quaternion)});
+  return 1 + std::max({stamp, fraction.value_or(0), *std::ranges::max_element(position),
+                       *std::ranges::max_element(quaternion)});
 }
 
 bool PoseColumns::same_places(const PoseColumns& other) const {
-  return stamp == other.stamp && position == other.position && quaternion == other.quaternion;
-}
-
-std::vector<std::string> column_names(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r\"'";
-  line = without(line, kBlanks);
-  line.remove_prefix(std::min(line.find_first_not_of("#% \t"), line.size()));
-  const std::size_t comma = std::min(line.find(','), line.size());
-  if (const std::size_t colon = line.find(':'); colon < comma) line.remove_prefix(colon + 1);
-  if (line.find(',') == line.npos) return split_at_blanks(line);
-  std::vector<std::string> names;
-  while (true) {
-    const std::string_view name = line.substr(0, line.find(','));
-    names.emplace_back(without(name, kBlanks));
-    if (name.size() == line.size()) break;
-    line.remove_prefix(name.size() + 1);
-  }
-  if (names.back().empty()) names.pop_back();
-  return names;
+  return stamp == other.stamp && fraction == other.fraction && position == other.position &&
+         quaternion == other.quaternion;
 }
 
 Result<NamedColumns> columns_by_name(std::span<const std::string> names) {
@@ -297,12 +259,19 @@ Result<NamedColumns> columns_by_name(std::span<const std::string> names) {
                   fmt::format("two columns are named as {}: {} and {}", kValues[number->index],
                               printable(names[numbers.column_of(number->index)]), printable(names[column])));
   }
-  if (auto sorted = sort_stamps(stamps, names); !sorted) return tl::unexpected(sorted.error());
+  const auto in_two = sort_stamps(stamps, names);
+  if (!in_two) return tl::unexpected(in_two.error());
   auto columns = numbers.columns();
   if (!columns) return tl::unexpected(columns.error());
   columns->stamp = stamps.front().column;
   columns->unit = stamps.front().unit;
-  return NamedColumns{*columns, stamps.size() > 1 ? printable(names[stamps[1].column]) : std::string()};
+  if (*in_two) {
+    columns->fraction = stamps[1].column;
+    columns->fraction_unit = *stamps[1].unit;
+  }
+  const std::size_t other = *in_two ? 2 : 1;
+  return NamedColumns{*columns,
+                      stamps.size() > other ? printable(names[stamps[other].column]) : std::string()};
 }
 
 }  // namespace fusebench::trajectory

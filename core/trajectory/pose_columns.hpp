@@ -20,7 +20,9 @@ struct PoseColumns {
   std::array<std::size_t, 3> position = {1, 2, 3};
   std::array<std::size_t, 4> quaternion = {4, 5, 6, 7};  ///< of x, y, z, w
   std::optional<io::TimeUnit> unit = {};                 ///< of the stamp, if it is named
-  double metres_per_unit = 1;                            ///< of the position
+  std::optional<std::size_t> fraction = {};              ///< of the time beyond the seconds in `stamp`
+  io::TimeUnit fraction_unit = io::TimeUnit::nanoseconds;
+  double metres_per_unit = 1;  ///< of the position
 
   /// How many columns a row needs.
   [[nodiscard]] std::size_t needed() const;
@@ -30,12 +32,10 @@ struct PoseColumns {
 };
 
 inline constexpr PoseColumns kTumColumns;
+/// As messages of ROS print them: whole seconds, and the nanoseconds beyond them.
+inline constexpr PoseColumns kSplitStampColumns{
+    .position = {2, 3, 4}, .quaternion = {5, 6, 7, 8}, .unit = io::TimeUnit::seconds, .fraction = 1};
 inline constexpr PoseColumns kEurocColumns{.quaternion = {5, 6, 7, 4}};
-
-/// The names in a line, without '#' or '%' before them, units included: "#ts (ns),tx (m)" has "ts (ns)" and
-/// "tx (m)". Names are separated by commas if there are any, else by blanks. Words before a colon, as in
-/// "# format: timestamp tx", are no names.
-[[nodiscard]] std::vector<std::string> column_names(std::string_view line);
 
 /// The columns of a pose among others.
 struct NamedColumns {
@@ -49,7 +49,9 @@ struct NamedColumns {
 /// last word ("time_ns"): of stamps s, ms, us, ns; of positions m, cm, mm, km.
 ///
 /// Of two columns that count time, the stamp of a header goes before timestamp, stamp, time, ts and t, and
-/// the finer unit first. Error data_corrupt: a column is missing, or two columns have the name of one value.
+/// these before a unit alone (sec). Two columns of one name, of which one is in seconds, are the seconds of
+/// the stamp and its fraction (stamp.sec, stamp.nanosec). Error data_corrupt: a column is missing, or two
+/// columns have the name of one value.
 [[nodiscard]] Result<NamedColumns> columns_by_name(std::span<const std::string> names);
 
 }  // namespace fusebench::trajectory

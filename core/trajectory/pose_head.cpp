@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -23,7 +25,7 @@ constexpr std::size_t kFewestColumns = 8;
 
 /// A line that names all of a pose is kept.
 void take_comment(std::string_view line, int number, PoseHead& head) {
-  std::vector<std::string> names = column_names(line);
+  std::vector<std::string> names = io::column_names(line);
   if (names.size() > kMostNames) return;
   auto named = columns_by_name(names);
   if (!named) return;
@@ -34,7 +36,7 @@ void take_comment(std::string_view line, int number, PoseHead& head) {
 
 Result<void> take_line_of_names(std::string_view line, int number, const std::filesystem::path& file,
                                 PoseHead& head) {
-  std::vector<std::string> names = column_names(line);
+  std::vector<std::string> names = io::column_names(line);
   auto named = columns_by_name(names);
   if (!named) {
     return fail(ErrorCode::data_corrupt,
@@ -48,20 +50,10 @@ Result<void> take_line_of_names(std::string_view line, int number, const std::fi
   return {};
 }
 
-std::size_t words_in(std::string_view line) {
-  constexpr std::string_view kSeparators = " \t\r;";
-  std::size_t count = 0;
-  while (true) {
-    line.remove_prefix(std::min(line.find_first_not_of(kSeparators), line.size()));
-    if (line.empty()) return count;
-    ++count;
-    line.remove_prefix(std::min(line.find_first_of(kSeparators), line.size()));
-  }
-}
-
-/// Of a row that has the columns of a pose without its commas.
-Result<void> check_decimal_points(std::string_view line, int number, const std::filesystem::path& file) {
-  if (!io::has_decimal_commas(line) || words_in(line) < kFewestColumns) return {};
+/// Of a row that has the columns of a pose.
+Result<void> check_decimal_points(std::string_view line, std::size_t fields, int number,
+                                  const std::filesystem::path& file) {
+  if (fields < kFewestColumns || !io::has_decimal_commas(line)) return {};
   return fail(ErrorCode::data_corrupt,
               fmt::format("{}:{}: decimal commas in place of decimal points", file.string(), number),
               std::string(io::kDecimalCommaHint));
@@ -107,7 +99,55 @@ std::optional<std::string> stamp_against(const PoseHead& head, std::size_t colum
   return std::nullopt;
 }
 
+/// Nothing of another text than digits.
+std::optional<std::int64_t> whole_number(const std::string& field) {
+  if (field.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  const auto value = io::parse_time_ns(field, io::TimeUnit::nanoseconds);
+  return value ? std::optional(*value) : std::nullopt;
+}
+
 }  // namespace
+
+double HeadRow::number(std::size_t column) const {
+  return io::parse_number(fields[column]).value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+double HeadRow::norm(std::size_t first, std::size_t count) const {
+  double sum = 0;
+  for (std::size_t i = first; i < first + count; ++i) sum += number(i) * number(i);
+  return std::sqrt(sum);
+}
+
+bool PoseHead::fits(const PoseColumns& columns) const {
+  const std::size_t first = *std::ranges::min_element(columns.quaternion);
+  return std::ranges::all_of(rows, [&](const HeadRow& row) {
+    if (row.fields.size() < columns.needed() || std::isnan(row.number(columns.stamp))) return false;
+    const double norm = row.norm(first, 4);
+    return norm == 0 || is_unit(norm) ||
+           std::any_of(row.fields.begin() + static_cast<std::ptrdiff_t>(columns.position[0]),
+                       row.fields.begin() + static_cast<std::ptrdiff_t>(first + 4), io::is_missing);
+  });
+}
+
+bool PoseHead::has_split_stamps() const {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  if (named || fits(kTumColumns) || !fits(kSplitStampColumns)) return false;
+  bool within_one = false;
+  std::int64_t before_s = 0;
+  std::int64_t before_ns = -1;
+  for (const HeadRow& row : rows) {
+    const auto s = whole_number(row.fields[0]);
+    const auto ns = whole_number(row.fields[1]);
+    if (!s || !ns || *ns >= kSecond_ns || *s < before_s) return false;
+    if (before_ns >= 0 && *s == before_s) {
+      if (*ns <= before_ns) return false;
+      within_one = true;
+    }
+    before_s = *s;
+    before_ns = *ns;
+  }
+  return within_one;
+}
 
 Result<PoseHead> read_pose_head(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   PoseHead head;
@@ -129,7 +169,7 @@ Result<PoseHead> read_pose_head(const std::filesystem::path& file, std::vector<s
         return tl::unexpected(taken.error());
       continue;
     }
-    if (auto points = check_decimal_points(text, number, file); !points)
+    if (auto points = check_decimal_points(text, fields.size(), number, file); !points)
       return tl::unexpected(points.error());
     head.rows.push_back({number, {fields.begin(), fields.end()}, text.find(',') != std::string_view::npos});
   }

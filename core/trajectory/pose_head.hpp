@@ -1,6 +1,7 @@
 // What the beginning of a file of poses says about its columns and its stamps.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -17,7 +18,14 @@ struct HeadRow {
   int line = 0;
   std::vector<std::string> fields;
   bool commas = false;
+
+  /// NaN of what is no number.
+  [[nodiscard]] double number(std::size_t column) const;
+  [[nodiscard]] double norm(std::size_t first, std::size_t count) const;
 };
+
+/// Of a row or column of a rotation, or a quaternion, as printed.
+[[nodiscard]] inline bool is_unit(double norm) { return std::abs(norm - 1) < 1e-2; }
 
 struct PoseHead {
   /// By the last line of names before the rows that names a stamp and all of a pose.
@@ -28,6 +36,10 @@ struct PoseHead {
   std::vector<HeadRow> rows = {};  ///< the first ones; none of a file that cannot be read as text
 
   [[nodiscard]] std::size_t columns() const { return rows.empty() ? 0 : rows.front().fields.size(); }
+  /// Every row has a number as its stamp and a quaternion of unit length there, or is of a lost frame.
+  [[nodiscard]] bool fits(const PoseColumns& columns) const;
+  /// Without names: whole seconds, several rows within one, and nanoseconds that rise there.
+  [[nodiscard]] bool has_split_stamps() const;
   [[nodiscard]] bool commas() const { return !rows.empty() && rows.front().commas; }
 };
 

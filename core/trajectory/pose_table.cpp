@@ -15,17 +15,17 @@ namespace {
 
 using PoseVector = Eigen::Matrix<double, 7, 1>;  // position, then x, y, z, w of the quaternion
 
+constexpr std::string_view kLostFrame = "a number is missing or nan, or the quaternion is 0 0 0 0";
+
 /// Nothing of a lost frame.
 Result<std::optional<PoseVector>> pose_numbers(const io::TextTable& table, const PoseColumns& columns) {
   std::array<std::size_t, 7> places{};
   std::ranges::copy(columns.position, places.begin());
   std::ranges::copy(columns.quaternion, places.begin() + 3);
-  if (std::ranges::all_of(places, [&](std::size_t column) { return table.text(column).empty(); }))
-    return std::optional<PoseVector>();
   bool lost = false;
   PoseVector v = PoseVector::Zero();
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (io::is_nan(table.text(places[i]))) {
+    if (io::is_missing(table.text(places[i]))) {
       lost = true;
       continue;
     }
@@ -38,8 +38,25 @@ Result<std::optional<PoseVector>> pose_numbers(const io::TextTable& table, const
   return std::optional(v);
 }
 
+/// Of a stamp whose seconds are in another column.
+Result<std::int64_t> with_fraction(const io::TextTable& table, const PoseColumns& columns,
+                                   std::int64_t seconds_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const Result<std::int64_t> fraction_ns = table.time_ns(*columns.fraction, columns.fraction_unit);
+  if (!fraction_ns) return fraction_ns;
+  if (seconds_ns % kSecond_ns == 0 && *fraction_ns >= 0 && *fraction_ns < kSecond_ns)
+    return seconds_ns + *fraction_ns;
+  return table.fail_here(
+      fmt::format(
+          "the stamp is in two columns, {} and {}, which are not whole seconds and less than a second "
+          "beyond them",
+          table.text(columns.stamp), table.text(*columns.fraction)),
+      "write each stamp into one column, in one unit");
+}
+
 Result<std::int64_t> stamp_ns(const io::TextTable& table, const PoseLayout& layout) {
   const Result<std::int64_t> time_ns = table.time_ns(layout.columns.stamp, layout.unit);
+  if (time_ns && layout.columns.fraction) return with_fraction(table, layout.columns, *time_ns);
   if (time_ns || !io::parse_number(table.text(layout.columns.stamp))) return time_ns;
   return fail(
       time_ns.error().code, time_ns.error().message,
@@ -59,13 +76,13 @@ Result<void> check_rows(const std::filesystem::path& file, const TrajectoryRows&
   if (lost.count == 0) return {};
   if (rows.poses.empty()) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("{}:{}: all {} rows are of lost frames (nan, or the quaternion 0 0 0 0)",
-                            file.string(), lost.first_line, lost.count),
+                fmt::format("{}:{}: all {} rows are of lost frames ({})", file.string(), lost.first_line,
+                            lost.count, kLostFrame),
                 "a trajectory needs a pose");
   }
-  warnings.push_back(
-      fmt::format("{}:{}: {} of {} rows are of lost frames (nan, or the quaternion 0 0 0 0) and are left out",
-                  file.string(), lost.first_line, lost.count, lost.count + rows.poses.size()));
+  warnings.push_back(fmt::format("{}:{}: {} of {} rows are of lost frames ({}) and are left out",
+                                 file.string(), lost.first_line, lost.count, lost.count + rows.poses.size(),
+                                 kLostFrame));
   return {};
 }
 
@@ -73,19 +90,18 @@ Result<void> check_rows(const std::filesystem::path& file, const TrajectoryRows&
 
 PoseLayout layout_of(const PoseHead& head, PoseLayout layout, const std::filesystem::path& file,
                      std::vector<std::string>& warnings) {
+  if (!head.named && layout.columns.same_places(kTumColumns) && head.has_split_stamps()) {
+    layout.columns = kSplitStampColumns;
+    layout.names = "seconds nanoseconds tx ty tz qx qy qz qw ...";
+    layout.explained = layout.columns.needed();
+    warnings.push_back(fmt::format("{}:{}: stamps are read as seconds and nanoseconds in two columns",
+                                   file.string(), head.rows.front().line));
+  }
   if (!head.named) return layout;
   layout.columns = head.named->columns;
   layout.explained = head.names.size();
   layout.names_line = head.names_are_comment ? 0 : head.names_line;
-  layout.names.clear();
-  for (std::size_t column = 0; column < layout.columns.needed(); ++column) {
-    // A table's names have no blanks, and brackets have a meaning there.
-    std::string name = printable(head.names[column].substr(0, head.names[column].find_first_of("[({")));
-    std::erase(name, ' ');
-    std::erase(name, ',');
-    layout.names += (name.empty() ? fmt::format("column_{}", column + 1) : name) + " ";
-  }
-  layout.names += "...";
+  layout.names = io::as_columns(std::span(head.names).first(layout.columns.needed())) + " ...";
   if (!head.named->other_stamp.empty()) {
     warnings.push_back(fmt::format("{}:{}: stamps are those of the column {}; the column {} is not used",
                                    file.string(), head.names_line,
@@ -107,16 +123,13 @@ Result<TrajectoryRows> read_pose_rows(const std::filesystem::path& file, const P
   io::TimeOrderCheck clock(order);
   TrajectoryRows rows;
   LostRows lost;
-  std::size_t unexplained = 0;
-  int first_line = 0;
+  bool has_rows = false;
   while (true) {
     const Result<bool> got = table->next();
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;
-    if (first_line == 0) {
-      first_line = table->line();
-      unexplained = table->size() - std::min(table->size(), layout.explained);
-    }
+    if (!has_rows) table->warn_of_more_columns(warnings, layout.explained);
+    has_rows = true;
     const Result<std::int64_t> time_ns = stamp_ns(*table, layout);
     if (!time_ns) return tl::unexpected(time_ns.error());
     const auto v = pose_numbers(*table, layout.columns);
@@ -134,12 +147,9 @@ Result<TrajectoryRows> read_pose_rows(const std::filesystem::path& file, const P
         !taken)
       return tl::unexpected(taken.error());
   }
-  if (first_line == 0)
+  if (!has_rows)
     return fail(ErrorCode::data_corrupt,
                 fmt::format("{}: has no rows (expected {})", file.string(), layout.names));
-  if (unexplained > 0)
-    warnings.push_back(fmt::format("{}:{}: {} columns after the first {} are not used", file.string(),
-                                   first_line, unexplained, layout.explained));
   if (auto checked = check_rows(file, rows, lost, warnings); !checked) return tl::unexpected(checked.error());
   return rows;
 }

@@ -23,14 +23,15 @@ struct PoseLayout {
   int names_line = 0;         ///< left out, a line of names without '#'; 0: there is none
 };
 
-/// The named columns, if there are any; else `layout`. A warning names another column that counts time.
+/// The named columns, if there are any; else `layout`, but that TUM's may have stamps in two columns.
+/// Warnings say so, and name another column that counts time.
 [[nodiscard]] PoseLayout layout_of(const PoseHead& head, PoseLayout layout, const std::filesystem::path& file,
                                    std::vector<std::string>& warnings);
 
 /// What is done with a row before its pose is taken; not called for lost frames.
 using PoseRow = std::function<Result<void>(const io::TextTable& table)>;
 
-/// Reads the poses of a file. Rows of lost frames (one of the seven numbers is "nan", or all are missing, or
+/// Reads the poses of a file. Rows of lost frames (one of the seven numbers is missing, io::is_missing(), or
 /// the quaternion is 0 0 0 0) are left out. Warnings count these rows, and columns without a meaning.
 ///
 /// Errors name file:line: data_missing; data_corrupt for a row that is no pose, the order in time, a

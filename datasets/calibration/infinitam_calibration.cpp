@@ -133,7 +133,7 @@ double depth_units_per_metre(Blocks& blocks) {
     blocks.complain("the depth scale must be 'affine', scale, offset");
     return 1;
   }
-  const double scale = blocks.positive("depth scale", 1e3);
+  const double scale = blocks.positive("depth scale (metres per unit)", 1 / kLeastUnits_per_m);
   if (blocks.number("depth offset") != 0) blocks.complain("the offset of depth must be 0");
   return 1 / scale;
 }

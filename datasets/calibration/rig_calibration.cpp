@@ -92,6 +92,15 @@ class Section {
     return range.least;
   }
 
+  [[nodiscard]] double units_per_metre(const std::string& key) {
+    const double value = number(key, {0, kMostUnits_per_m});
+    if (!is_units_per_metre(value)) {
+      const Error error = no_units_per_metre(ErrorCode::configuration, entries_.at(key)->key, value).value();
+      report(fmt::format("{}: {}", entries_.at(key)->place, error.message), error.hint);
+    }
+    return value;
+  }
+
   [[nodiscard]] int pixels(const std::string& key) {
     const double value = number(key, kSize);
     if (value != std::floor(value))
@@ -218,7 +227,7 @@ CalibratedCamera read_color_table(Section& section) {
 void read_depth_table(Section& section, RigCalibration& calibration) {
   section.allow(kDepthKeys);
   if (section.has("units_per_metre"))
-    calibration.depth_units_per_metre = section.number("units_per_metre", {1e-3, 1e6});
+    calibration.depth_units_per_metre = section.units_per_metre("units_per_metre");
   SensorTiming& timing = calibration.color.timing;
   timing.depth_readout_s = section.number("readout_s", kReadout, kUnknownReadout_s);
   timing.depth_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
@@ -245,7 +254,7 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
     if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostLeverArm_m)
-      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostLeverArm_m));
+      section.complain(fmt::format("the IMU is more than {} m from the colour camera", kMostLeverArm_m));
   }
   imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
@@ -259,6 +268,15 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
 
 }  // namespace
 
+tl::unexpected<Error> no_units_per_metre(ErrorCode code, std::string_view name, double value) {
+  return fail(code,
+              fmt::format("{} = {} (allowed: {} to {} units per metre)", name, value, kLeastUnits_per_m,
+                          kMostUnits_per_m),
+              is_units_per_metre(1 / value)
+                  ? fmt::format("{} metres per unit are {:.6g} units per metre", value, 1 / value)
+                  : "");
+}
+
 std::optional<SE3> rigid_transform(std::span<const double, 12> rows) {
   Matrix3d R;
   R << rows[0], rows[1], rows[2], rows[4], rows[5], rows[6], rows[8], rows[9], rows[10];
@@ -269,6 +287,13 @@ std::optional<SE3> rigid_transform(std::span<const double, 12> rows) {
   const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
   return SE3{Quaterniond(nearest).normalized(), {rows[3], rows[7], rows[11]}};
+}
+
+std::optional<SE3> rigid_transform(std::span<const double, 16> rows) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::Map<const Eigen::RowVector4d> last(rows.data() + 12);
+  if (!((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kTolerance)) return std::nullopt;
+  return rigid_transform(rows.first<12>());
 }
 
 Result<RigCalibration> rig_calibration(const config::TomlDocument& document, const std::string& file) {

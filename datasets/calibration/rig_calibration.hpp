@@ -65,7 +65,9 @@ struct RigCalibration {
 };
 
 inline constexpr std::string_view kRigidTransformRule =
-    "[R | t] row by row, R orthonormal within 1e-3 with determinant +1, t up to 1e8 m";
+    "[R | t] row by row, R orthonormal within 1e-3 with determinant +1, t up to 1e8 m; the last row of 4x4 "
+    "is "
+    "0 0 0 1, so transpose a matrix with its translation there";
 
 /// Between sensors of one rig: more is another unit, or damaged.
 inline constexpr double kMostLeverArm_m = 1000;
@@ -77,12 +79,26 @@ inline constexpr int kMostSize_px = 100'000;
 inline constexpr double kMostReadout_s = 1;
 inline constexpr double kMostDelay_s = 10;
 
+/// Of depth in whole numbers: they are of 10 m or less. 0.001 is a unit in metres, not a number of units.
+inline constexpr double kLeastUnits_per_m = 0.1;
+inline constexpr double kMostUnits_per_m = 1e6;
+[[nodiscard]] inline bool is_units_per_metre(double units) {
+  return units >= kLeastUnits_per_m && units <= kMostUnits_per_m;
+}
+/// An error about a value out of this range: `name` with its place. The hint names the units per metre that
+/// the value is as metres per unit.
+[[nodiscard]] tl::unexpected<Error> no_units_per_metre(ErrorCode code, std::string_view name, double value);
+
 /// Of any pose in metres, also in the coordinates of a map: beyond, doubles no longer tell micrometres apart.
 inline constexpr double kMostTranslation_m = 1e8;
 
 /// A row-major 3x4 matrix as a rigid transform. Published matrices are rounded, so the nearest rotation is
 /// taken. Nothing if the matrix breaks kRigidTransformRule.
 [[nodiscard]] std::optional<SE3> rigid_transform(std::span<const double, 12> rows);
+
+/// The same of a 4x4 matrix, whose last row is 0 0 0 1: of a transposed one the upper part would be a
+/// rotation without its translation.
+[[nodiscard]] std::optional<SE3> rigid_transform(std::span<const double, 16> rows);
 
 /// The calibration among the entries of a TOML file; keys of other tables are left alone, unknown keys within
 /// the three tables are errors. Errors (configuration, with file:line): unknown or missing key, wrong type, a

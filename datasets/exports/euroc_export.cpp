@@ -1,11 +1,10 @@
-#include "datasets/exports/euroc_export.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
 #include <string>
 #include <string_view>
 
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/orbslam3_settings.hpp"
 #include "datasets/exports/quantised_frames.hpp"
 #include "datasets/exports/sensor_tables.hpp"
@@ -15,21 +14,13 @@ namespace fusebench::exports {
 
 namespace {
 
-constexpr std::string_view kTruthFolder = "mav0/state_groundtruth_estimate0";
-
 std::string image_name(const QuantisedFrame& frame) {
   return fmt::format("{}.png", frame.entry.timestamp_ns);
 }
 
 /// T_BS of a sensor.yaml.
 std::string pose_yaml(const SE3& T_body_sensor) {
-  const Matrix3d R = T_body_sensor.rotation_matrix();
-  std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
-  for (int row = 0; row < 3; ++row) {
-    fmt::format_to(std::back_inserter(text), "{:#}, {:#}, {:#}, {:#},\n         ", R(row, 0), R(row, 1),
-                   R(row, 2), T_body_sensor.translation[row]);
-  }
-  return text + "0.0, 0.0, 0.0, 1.0]\n";
+  return "T_BS:\n  cols: 4\n  rows: 4\n" + matrix_yaml(T_body_sensor);
 }
 
 SE3 T_body_camera(const recording::Recording& recording) {
@@ -75,41 +66,41 @@ Result<void> write_cameras(const recording::Recording& recording, const ExportPl
     fmt::format_to(std::back_inserter(images), "{0},{0}.png\n", frame.timestamp_ns);
     fmt::format_to(std::back_inserter(times), "{}\n", frame.timestamp_ns);
   }
-  if (auto written = place.write("mav0/cam0/data.csv", images); !written) return written;
-  if (auto written = place.write("mav0/depth0/data.csv", images); !written) return written;
   const std::string yaml = camera_yaml(recording);
-  if (auto written = place.write("mav0/cam0/sensor.yaml", yaml); !written) return written;
   const std::string scale = fmt::format("depth_units_per_metre: {:#}\n", kEurocDepth.units_per_metre);
-  if (auto written = place.write("mav0/depth0/sensor.yaml", yaml + scale); !written) return written;
-  return place.write("times.txt", times);
+  return place.write({{"mav0/cam0/data.csv", images},
+                      {"mav0/depth0/data.csv", images},
+                      {"mav0/cam0/sensor.yaml", yaml},
+                      {"mav0/depth0/sensor.yaml", yaml + scale},
+                      {"times.txt", times}});
 }
 
 Result<void> write_imu(const recording::Recording& recording, const ExportPlace& place) {
   if (recording.imu.empty()) return {};
-  if (auto created = place.create_folder("mav0/imu0"); !created) return created;
-  if (auto written = place.write("mav0/imu0/sensor.yaml", imu_yaml(recording)); !written) return written;
-  return place.write("mav0/imu0/data.csv", imu_table(recording.imu));
+  if (auto created = place.create_folders({"mav0/imu0"}); !created) return created;
+  return place.write(
+      {{"mav0/imu0/sensor.yaml", imu_yaml(recording)}, {"mav0/imu0/data.csv", imu_table(recording.imu)}});
 }
 
 Result<void> write_truth(const recording::Recording& recording, const ExportPlace& place) {
   // True states are of the IMU, which is the body only if it is written.
   const bool has_states = !recording.state_truth.empty() && !recording.imu.empty();
   if (!has_states && recording.ground_truth.empty()) return {};
-  if (auto created = place.create_folder(kTruthFolder); !created) return created;
-  return place.write(fmt::format("{}/data.csv", kTruthFolder),
-                     has_states ? state_table(recording.state_truth) : pose_table(body_poses(recording)));
+  const std::string folder = "mav0/state_groundtruth_estimate0";
+  if (auto created = place.create_folders({folder}); !created) return created;
+  return place.write({{folder + "/data.csv",
+                       has_states ? state_table(recording.state_truth) : pose_table(body_poses(recording))}});
 }
 
 Result<void> write_settings(const recording::Recording& recording, const ExportPlace& place) {
-  return place.write("orbslam3.yaml", orbslam3_settings(recording, kEurocDepth));
+  return place.write({{"orbslam3.yaml", orbslam3_settings(recording, kEurocDepth)}});
 }
 
 }  // namespace
 
 Result<WrittenExport> write_euroc(const recording::Recording& recording, const ExportPlace& place) {
-  for (const std::string_view folder : {"mav0/cam0/data", "mav0/depth0/data"}) {
-    if (const auto created = place.create_folder(folder); !created) return tl::unexpected(created.error());
-  }
+  if (const auto created = place.create_folders({"mav0/cam0/data", "mav0/depth0/data"}); !created)
+    return tl::unexpected(created.error());
   const auto counts =
       for_each_frame(recording, kEurocDepth, [&](const QuantisedFrame& frame) -> Result<void> {
         const std::string name = image_name(frame);

@@ -1,11 +1,8 @@
 #include "datasets/exports/export_place.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -21,15 +18,6 @@ namespace {
 tl::unexpected<Error> exists_already(const fs::path& place) {
   return fail(ErrorCode::usage, fmt::format("{}: exists already, and nothing is replaced", place.string()),
               "remove it, or choose another place with --out");
-}
-
-std::error_code sync_file(const fs::path& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return {errno, std::generic_category()};
-  const int failed = fsync(descriptor) == 0 ? 0 : errno;
-  close(descriptor);
-  if (failed == EINVAL || failed == ENOTSUP) return {};  // a file system that cannot sync
-  return {failed, std::generic_category()};
 }
 
 bool have_same_bytes(const fs::path& one, const fs::path& other) {
@@ -91,15 +79,20 @@ std::string ExportPlace::beside(std::string_view ending) const {
   return fmt::format("{}.{}", fs::path(name_).stem().string(), ending);
 }
 
-Result<void> ExportPlace::create_folder(std::string_view name) const {
-  std::error_code error;
-  fs::create_directories(file(name), error);
-  if (error) return cannot_be_written(file(name), error.message());
+Result<void> ExportPlace::create_folders(const std::vector<std::string>& names) const {
+  for (const std::string& name : names) {
+    std::error_code error;
+    fs::create_directories(file(name), error);
+    if (error) return cannot_be_written(file(name), error.message());
+  }
   return {};
 }
 
-Result<void> ExportPlace::write(std::string_view name, std::string_view text) const {
-  return staged_.write(name, text);
+Result<void> ExportPlace::write(const std::vector<TextFile>& files) const {
+  for (const auto& [name, text] : files) {
+    if (auto written = staged_.write(name, text); !written) return written;
+  }
+  return {};
 }
 
 Result<void> ExportPlace::commit() { return kind_ == Kind::folder ? staged_.commit() : move_files(); }
@@ -123,7 +116,7 @@ Result<void> ExportPlace::move_files() const {
   }
   MovedFiles moved(names.size());
   for (const fs::path& name : names) {
-    error = sync_file(staged_.path() / name);
+    error = io::sync_to_disk(staged_.path() / name);
     // So are the names of those before it, on a disk that may lose what was not synced.
     if (!error && name == name_ && !moved.empty()) error = io::sync_names(out_);
     if (!error) error = moved.move(staged_.path() / name, out_.parent_path() / name);

@@ -4,11 +4,15 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/io/staged_folder.hpp"
 
 namespace fusebench::exports {
+
+using TextFile = std::pair<std::string, std::string>;  ///< name and content
 
 /// A folder, or files beside each other: filled under a temporary name beside the destination, and moved
 /// there by commit(). Removes everything that it created unless commit() succeeded.
@@ -26,11 +30,12 @@ class ExportPlace {
   /// "room.calibration.txt".
   [[nodiscard]] std::string beside(std::string_view ending) const;
 
-  /// Where to write a file; names may have folders in them, which create_folder() makes.
+  /// Where to write a file; names may have folders in them, which create_folders() makes.
   [[nodiscard]] std::filesystem::path file(std::string_view name) const { return staged_.file(name); }
   /// Errors: io.
-  [[nodiscard]] Result<void> create_folder(std::string_view name) const;
-  [[nodiscard]] Result<void> write(std::string_view name, std::string_view text) const;
+  [[nodiscard]] Result<void> create_folders(const std::vector<std::string>& names) const;
+  /// In their order, up to the first error.
+  [[nodiscard]] Result<void> write(const std::vector<TextFile>& files) const;
   /// Errors: io; usage (one of the files exists).
   [[nodiscard]] Result<void> commit();
 

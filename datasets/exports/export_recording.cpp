@@ -10,13 +10,8 @@
 
 #include "core/base/nearest_name.hpp"
 #include "core/trajectory/trajectory_file.hpp"
-#include "datasets/exports/euroc_export.hpp"
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/export_place.hpp"
-#include "datasets/exports/infinitam_export.hpp"
-#include "datasets/exports/klg_export.hpp"
-#include "datasets/exports/open3d_export.hpp"
-#include "datasets/exports/sens_export.hpp"
-#include "datasets/exports/tum_export.hpp"
 #include "datasets/reading/side_files.hpp"
 
 namespace fusebench::exports {
@@ -32,17 +27,18 @@ struct FormatRow {
   std::size_t most_frames;
   std::string_view limited_by;
   DepthStorage depth;
+  bool writes_imu;
   Result<WrittenExport> (*write)(const recording::Recording& recording, const ExportPlace& place);
 };
 
 // In the order of ExportFormat.
 constexpr std::array<FormatRow, 6> kFormats = {{
-    {"tum", PlaceKind::folder, kAnyNumber, "", kTumDepth, write_tum},
-    {"infinitam", PlaceKind::folder, kAnyNumber, "", kInfinitamDepth, write_infinitam},
-    {"klg", PlaceKind::files, kKlgMostFrames, "ElasticFusion", kKlgDepth, write_klg},
-    {"sens", PlaceKind::files, kSensMostFrames, "BundleFusion", kSensDepth, write_sens},
-    {"open3d", PlaceKind::folder, kAnyNumber, "", kOpen3dDepth, write_open3d},
-    {"euroc", PlaceKind::folder, kAnyNumber, "", kEurocDepth, write_euroc},
+    {"tum", PlaceKind::folder, kAnyNumber, "", kTumDepth, true, write_tum},
+    {"infinitam", PlaceKind::folder, kAnyNumber, "", kInfinitamDepth, false, write_infinitam},
+    {"klg", PlaceKind::files, kKlgMostFrames, "ElasticFusion", kKlgDepth, false, write_klg},
+    {"sens", PlaceKind::files, kSensMostFrames, "BundleFusion", kSensDepth, false, write_sens},
+    {"open3d", PlaceKind::folder, kAnyNumber, "", kOpen3dDepth, false, write_open3d},
+    {"euroc", PlaceKind::folder, kAnyNumber, "", kEurocDepth, true, write_euroc},
 }};
 
 const FormatRow& row_of(ExportFormat format) { return kFormats[static_cast<std::size_t>(format)]; }
@@ -51,7 +47,7 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
   const std::size_t count = recording.frames.size();
   if (count == 0)
     return fail(ErrorCode::usage, fmt::format("'{}' has no frames to export", recording.name),
-                "`fusebench inspect` says what is in it");
+                "`fusebench inspect` lists its contents");
   if (count > row.most_frames)
     return fail(ErrorCode::usage,
                 fmt::format("'{}' has {} frames (allowed in {}: 1 .. {}, which {} takes)", recording.name,
@@ -63,7 +59,7 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
                 fmt::format("'{}': frames {} and {} have stamps {} and {} (they must rise)", recording.name,
                             k - 1, k, trajectory::stamp_text(recording.frames[k - 1].timestamp_ns),
                             trajectory::stamp_text(recording.frames[k].timestamp_ns)),
-                "`fusebench inspect` says more; leave these frames out with --frames A:B");
+                "`fusebench inspect` shows details; leave these frames out with --frames A:B");
   }
   return {};
 }
@@ -72,8 +68,8 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
 Result<void> write_label(const recording::Recording& recording, PlaceKind kind, const ExportPlace& place) {
   if (!recording.simulated) return {};
   const std::string_view file = reading::kSimulationFile;
-  return place.write(kind == PlaceKind::folder ? std::string(file) : place.beside(file),
-                     fmt::format("# exported from the simulated recording {}\n", recording.name));
+  return place.write({{kind == PlaceKind::folder ? std::string(file) : place.beside(file),
+                       fmt::format("# exported from the simulated recording {}\n", recording.name)}});
 }
 
 }  // namespace
@@ -103,6 +99,7 @@ Result<ExportSummary> export_recording(const recording::Recording& recording, Ex
   if (!place) return tl::unexpected(place.error());
   auto written = row.write(recording, *place);
   if (!written) return tl::unexpected(written.error());
+  if (!row.writes_imu && !recording.imu.empty()) written->notes.push_back("inertial samples are not written");
   if (const auto labelled = write_label(recording, row.kind, *place); !labelled)
     return tl::unexpected(labelled.error());
   if (const auto done = place->commit(); !done) return tl::unexpected(done.error());

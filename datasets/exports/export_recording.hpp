@@ -17,9 +17,8 @@ namespace fusebench::exports {
 
 /// Writes all frames: undistorted colour and the depth of each of its pixels, in one camera. `out` is a
 /// folder, or for klg and sens a file; it must not exist. All of it appears at once or, on an error, nothing
-/// does; the same recording gives the same bytes. What each format holds is in its header (tum_export.hpp,
-/// infinitam_export.hpp, klg_export.hpp, sens_export.hpp, open3d_export.hpp, euroc_export.hpp). Errors: usage
-/// (no frames or more than the format takes, a size that it does not take, `out` exists), data_corrupt
+/// does; the same recording gives the same bytes. export_formats.hpp says what each format holds. Errors:
+/// usage (no frames or more than the format takes, a size that it does not take, `out` exists), data_corrupt
 /// (stamps that do not rise), io, and those of load_frame.
 [[nodiscard]] Result<ExportSummary> export_recording(const recording::Recording& recording,
                                                      ExportFormat format, const std::filesystem::path& out);

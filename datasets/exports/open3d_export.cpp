@@ -1,10 +1,8 @@
-#include "datasets/exports/open3d_export.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
-#include <string_view>
 
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/quantised_frames.hpp"
 #include "datasets/exports/sensor_tables.hpp"
 #include "datasets/images/image_files.hpp"
@@ -31,9 +29,8 @@ std::string config_json() {
 }  // namespace
 
 Result<WrittenExport> write_open3d(const recording::Recording& recording, const ExportPlace& place) {
-  for (const std::string_view folder : {"color", "depth"}) {
-    if (const auto created = place.create_folder(folder); !created) return tl::unexpected(created.error());
-  }
+  if (const auto created = place.create_folders({"color", "depth"}); !created)
+    return tl::unexpected(created.error());
   const auto counts =
       for_each_frame(recording, kOpen3dDepth, [&](const QuantisedFrame& frame) -> Result<void> {
         const std::string name = fmt::format("{:06}.png", frame.index);
@@ -42,20 +39,17 @@ Result<WrittenExport> write_open3d(const recording::Recording& recording, const 
         return images::write_png(place.file("depth/" + name), frame.depth);
       });
   if (!counts) return tl::unexpected(counts.error());
-  const auto intrinsics = place.write("intrinsic.json", intrinsic_json(recording.rig.camera));
-  if (!intrinsics) return tl::unexpected(intrinsics.error());
-  const auto config = place.write("config.json", config_json());
-  if (!config) return tl::unexpected(config.error());
-  const auto times = place.write("frame_times.txt", frame_time_table(recording.frames));
-  if (!times) return tl::unexpected(times.error());
-  WrittenExport result{*counts, {"config.json", "intrinsic.json"}, {}};
-  result.calibration = "intrinsic.json";
-  result.notes = {
-      "Open3D: in the folder, run_system.py --config config.json --make --register --refine --integrate",
-      "frames have numbers and no time: frame_times.txt has the stamp of each",
-      "its own default leaves out depth beyond 3 m; more is said in config.json"};
-  if (!recording.imu.empty()) result.notes.push_back("inertial samples are not written");
-  return result;
+  const auto written = place.write({{"intrinsic.json", intrinsic_json(recording.rig.camera)},
+                                    {"config.json", config_json()},
+                                    {"frame_times.txt", frame_time_table(recording.frames)}});
+  if (!written) return tl::unexpected(written.error());
+  return WrittenExport{
+      *counts,
+      {"config.json", "intrinsic.json"},
+      {"Open3D: in the folder, run_system.py --config config.json --make --register --refine --integrate",
+       "frames have numbers and no time: frame_times.txt has the stamp of each",
+       "its own default leaves out depth beyond 3 m; config.json contains further notes"},
+      "intrinsic.json"};
 }
 
 }  // namespace fusebench::exports

@@ -17,17 +17,10 @@ namespace {
 constexpr double kBaseline_m = 0.075;
 
 std::string imu_settings(const recording::Recording& recording) {
-  const SE3& T = recording.rig.T_imu_camera;
-  const Matrix3d R = T.rotation_matrix();
-  std::string text =
-      "\n# camera to IMU\nIMU.T_b_c1: !!opencv-matrix\n  rows: 4\n  cols: 4\n  dt: f\n  data: [";
-  for (int row = 0; row < 3; ++row) {
-    fmt::format_to(std::back_inserter(text), "{:#}, {:#}, {:#}, {:#},\n         ", R(row, 0), R(row, 1),
-                   R(row, 2), T.translation[row]);
-  }
+  std::string text = "\n# camera to IMU\nIMU.T_b_c1: !!opencv-matrix\n  rows: 4\n  cols: 4\n  dt: f\n" +
+                     matrix_yaml(recording.rig.T_imu_camera);
   const ImuNoise& noise = recording.rig.imu_noise;
   fmt::format_to(std::back_inserter(text),
-                 "0.0, 0.0, 0.0, 1.0]\n"
                  "IMU.InsertKFsWhenLost: 0\n"
                  "# rad/s/sqrt(Hz), m/s^2/sqrt(Hz), rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz), Hz\n"
                  "IMU.NoiseGyro: {:#}\nIMU.NoiseAcc: {:#}\nIMU.GyroWalk: {:#}\nIMU.AccWalk: {:#}\n"
@@ -39,6 +32,16 @@ std::string imu_settings(const recording::Recording& recording) {
 }
 
 }  // namespace
+
+std::string matrix_yaml(const SE3& T) {
+  const Matrix3d R = T.rotation_matrix();
+  std::string text = "  data: [";
+  for (int row = 0; row < 3; ++row) {
+    fmt::format_to(std::back_inserter(text), "{:#}, {:#}, {:#}, {:#},\n         ", R(row, 0), R(row, 1),
+                   R(row, 2), T.translation[row]);
+  }
+  return text + "0.0, 0.0, 0.0, 1.0]\n";
+}
 
 std::string orbslam3_settings(const recording::Recording& recording, const DepthStorage& depth) {
   const PinholeCamera& camera = recording.rig.camera;

@@ -13,4 +13,7 @@ namespace fusebench::exports {
 /// TUM files. Real numbers have a decimal point: its reader takes nothing else for one.
 [[nodiscard]] std::string orbslam3_settings(const recording::Recording& recording, const DepthStorage& depth);
 
+/// "  data: [...]": a pose as the rows of a 4x4 matrix.
+[[nodiscard]] std::string matrix_yaml(const SE3& T);
+
 }  // namespace fusebench::exports

@@ -1,5 +1,3 @@
-#include "datasets/exports/sens_export.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,9 @@
 #include <fstream>
 #include <string>
 
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/quantised_frames.hpp"
+#include "datasets/image_logs/sens_log.hpp"
 #include "datasets/images/image_files.hpp"
 
 namespace fusebench::exports {
@@ -51,14 +51,13 @@ Result<WrittenExport> write_sens(const recording::Recording& recording, const Ex
   if (const auto written = put(no_imu_frames); !written) return tl::unexpected(written.error());
   stream.close();
   if (!stream) return cannot_be_written(file);
-  WrittenExport result{*counts, {place.name()}, {}};
-  result.notes = {
-      fmt::format("BundleFusion: in its parameter file, s_sensorIdx = 8 and s_binaryDumpSensorFile = \"{}\"",
-                  place.name()),
-      fmt::format("colour is JPEG of quality {}, which changes its pixels a little", kJpegQuality),
-      "the file holds no poses: the true ones are not for the program that is to estimate them"};
-  if (!recording.imu.empty()) result.notes.push_back("inertial samples are not written");
-  return result;
+  return WrittenExport{
+      *counts,
+      {place.name()},
+      {fmt::format("BundleFusion: in its parameter file, s_sensorIdx = 8 and s_binaryDumpSensorFile = \"{}\"",
+                   place.name()),
+       fmt::format("colour is JPEG of quality {}, which changes its pixels a little", kJpegQuality),
+       "the file holds no poses: the true ones are not for the program that is to estimate them"}};
 }
 
 }  // namespace fusebench::exports

@@ -1,13 +1,12 @@
-#include "datasets/exports/tum_export.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
+#include "datasets/exports/export_formats.hpp"
 #include "datasets/exports/orbslam3_settings.hpp"
 #include "datasets/exports/quantised_frames.hpp"
 #include "datasets/exports/sensor_tables.hpp"
@@ -54,9 +53,7 @@ Result<void> write_lists(const recording::Recording& recording, const ExportPlac
     depth += depth_row + "\n";
     pairs += color_row + " " + depth_row + "\n";
   }
-  if (auto written = place.write("rgb.txt", color); !written) return written;
-  if (auto written = place.write("depth.txt", depth); !written) return written;
-  return place.write("associations.txt", pairs);
+  return place.write({{"rgb.txt", color}, {"depth.txt", depth}, {"associations.txt", pairs}});
 }
 
 /// Of what is written: undistorted images of one camera, and an IMU on the images' clock.
@@ -75,7 +72,7 @@ calibration::RigCalibration calibration_of(const recording::Recording& recording
 Result<void> write_truth(const recording::Recording& recording, const ExportPlace& place) {
   if (recording.ground_truth.empty()) return {};
   const std::string label = recording.truth_label.empty() ? "" : fmt::format("# {}\n", recording.truth_label);
-  return place.write("groundtruth.txt", label + trajectory::tum_text(recording.ground_truth));
+  return place.write({{"groundtruth.txt", label + trajectory::tum_text(recording.ground_truth)}});
 }
 
 std::string accelerometer_text(const recording::Recording& recording) {
@@ -91,27 +88,22 @@ std::string accelerometer_text(const recording::Recording& recording) {
 Result<void> write_sensors(const recording::Recording& recording, const ExportPlace& place) {
   const std::string toml = calibration::to_toml(calibration_of(recording));
   if (auto readable = calibration::check_readable(toml, "calibration.toml"); !readable) return readable;
-  if (auto written = place.write("calibration.toml", toml); !written) return written;
-  if (auto written = place.write("orbslam3.yaml", orbslam3_settings(recording, kTumDepth)); !written)
-    return written;
-  if (!recording.accelerometer.empty()) {
-    if (auto written = place.write("accelerometer.txt", accelerometer_text(recording)); !written)
-      return written;
-  }
-  if (!recording.state_truth.empty()) {
-    if (auto written = place.write("state_groundtruth.csv", state_table(recording.state_truth)); !written)
-      return written;
-  }
-  return recording.imu.empty() ? Result<void>{} : place.write("imu.csv", imu_table(recording.imu));
+  std::vector<TextFile> files = {{"calibration.toml", toml},
+                                 {"orbslam3.yaml", orbslam3_settings(recording, kTumDepth)}};
+  if (!recording.accelerometer.empty())
+    files.emplace_back("accelerometer.txt", accelerometer_text(recording));
+  if (!recording.state_truth.empty())
+    files.emplace_back("state_groundtruth.csv", state_table(recording.state_truth));
+  if (!recording.imu.empty()) files.emplace_back("imu.csv", imu_table(recording.imu));
+  return place.write(files);
 }
 
 }  // namespace
 
 Result<WrittenExport> write_tum(const recording::Recording& recording, const ExportPlace& place) {
   if (const auto rise = check_depth_stamps(recording); !rise) return tl::unexpected(rise.error());
-  for (const std::string_view folder : {"rgb", "depth"}) {
-    if (const auto created = place.create_folder(folder); !created) return tl::unexpected(created.error());
-  }
+  if (const auto created = place.create_folders({"rgb", "depth"}); !created)
+    return tl::unexpected(created.error());
   const auto counts = for_each_frame(recording, kTumDepth, [&](const QuantisedFrame& frame) -> Result<void> {
     if (auto written = images::write_png(place.file(color_name(frame.entry)), frame.color); !written)
       return written;

@@ -203,16 +203,6 @@ Result<std::optional<SensFrame>> SensReader::next() {
   return std::move(head.frame);
 }
 
-Result<std::optional<SensFrame>> SensReader::next_pose() {
-  if (read_ >= header_.frames) return std::nullopt;
-  FrameHead head = take_head();
-  reader_.skip(head.color_bytes, "colour");
-  reader_.skip(head.depth_bytes, "depth");
-  if (reader_.error()) return tl::unexpected(*reader_.error());
-  ++read_;
-  return std::move(head.frame);
-}
-
 Result<std::optional<SensFrameParts>> SensReader::next_parts() {
   if (read_ >= header_.frames) return std::nullopt;
   const FrameHead head = take_head();
@@ -261,11 +251,11 @@ Result<Trajectory> read_sens_trajectory(const std::filesystem::path& file) {
   if (!reader) return tl::unexpected(reader.error());
   Trajectory trajectory;
   while (true) {
-    const auto frame = reader->next_pose();
+    const auto frame = reader->next_parts();
     if (!frame) return tl::unexpected(frame.error());
     if (!*frame) break;
     if (!(*frame)->T_world_camera) continue;
-    const std::uint64_t stamp_us = (*frame)->color_timestamp_us;
+    const std::uint64_t stamp_us = (*frame)->color_timestamp;
     const auto stamp_ns =
         static_cast<std::int64_t>(std::min(stamp_us, kMost_us)) * kNanosecondsPerMicrosecond;
     if (stamp_us > kMost_us || (!trajectory.empty() && stamp_ns <= trajectory.back().timestamp_ns))

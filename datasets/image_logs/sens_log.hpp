@@ -88,9 +88,7 @@ class SensReader {
   /// Nothing after the last one. Errors: data_corrupt (the file ends early, depth that is damaged, of another
   /// size or in the occipital codec; a pose that is no rigid transform).
   [[nodiscard]] Result<std::optional<SensFrame>> next();
-  /// The same without images.
-  [[nodiscard]] Result<std::optional<SensFrame>> next_pose();
-  /// The same with the places of the images.
+  /// The same with the places of the images in place of the images.
   [[nodiscard]] Result<std::optional<SensFrameParts>> next_parts();
   /// The inertial frames, when all others have been read (checked). A file may end without them. Errors:
   /// data_corrupt (more frames than there are bytes, a number that is not finite).

@@ -330,6 +330,12 @@ Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string
   return decode_image<std::uint16_t>(decode_plain_png_grey16, name, bytes, depth_pixels);
 }
 
+Result<std::vector<std::uint8_t>> encode_png(const ColorImage& image) {
+  std::vector<std::uint8_t> bytes = png_bytes(view_of(image, 3, SampleType::uint8));
+  if (bytes.empty()) return fail(ErrorCode::io, "PNG in memory: not enough memory");
+  return bytes;
+}
+
 Result<void> write_png(const std::filesystem::path& file, const ColorImage& image) {
   return write_image(file, view_of(image, 3, SampleType::uint8));
 }

@@ -60,6 +60,9 @@ struct ImageSize {
 /// Encodes a JPEG file in memory. quality: 1 to 100. Errors: io.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);
 
+/// A PNG file in memory. Errors: io.
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_png(const ColorImage& image);
+
 /// Writes a PNG: 8-bit colour, 8-bit grey, 16-bit grey. Errors: io.
 [[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const ColorImage& image);
 [[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const GreyImage& image);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr const char* kModule = "fusebench_images.so";
 constexpr const char* kHint =
-    "build or install fusebench whole: the module, with OpenImageIO, reads what is no plain PNG and writes "
-    "JPEGs";
+    "build or install all of fusebench: this module with OpenImageIO reads images other than plain PNGs and "
+    "writes JPEGs";
 
 /// Error message of the dynamic linker without its leading file name.
 std::string reason_besides(const std::string& file) {

@@ -85,14 +85,19 @@ Bytes compressed(const Bytes& content) {
 
 }  // namespace
 
-tl::expected<void, std::string> write_png_file(const std::filesystem::path& file, const PixelView& image) {
+std::vector<std::uint8_t> png_bytes(const PixelView& image) {
   const Bytes pixels = compressed(filtered_rows(image));
-  if (pixels.empty()) return tl::unexpected(std::string("not enough memory"));
+  if (pixels.empty()) return {};
   Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   append_chunk("IHDR", header_of(image), bytes);
   append_chunk("IDAT", pixels, bytes);
   append_chunk("IEND", {}, bytes);
+  return bytes;
+}
 
+tl::expected<void, std::string> write_png_file(const std::filesystem::path& file, const PixelView& image) {
+  const Bytes bytes = png_bytes(image);
+  if (bytes.empty()) return tl::unexpected(std::string("not enough memory"));
   const auto reason_of_system = [] { return tl::unexpected(std::string(std::strerror(errno))); };
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(std::fopen(file.c_str(), "wb"), std::fclose);
   if (!output) return reason_of_system();

@@ -23,7 +23,7 @@ constexpr auto kCodes = std::to_array<FindingCode>({
     {"cannot-open", "the recording's reader refused it"},
     {"frame-unreadable", "a sampled frame could not be loaded"},
     {"reader-warning", "the reader's own warning, such as images without a partner"},
-    {"reader-note", "what the reader did to the data"},
+    {"reader-note", "changes that the reader made to the data"},
     // Stamps of the images
     {"frames-time-unit", "the spacing of the frames is not that of seconds"},
     {"frames-duplicate-stamp", "two frames have one stamp"},
@@ -47,9 +47,9 @@ constexpr auto kCodes = std::to_array<FindingCode>({
     {"depth-holes", "much of the depth images is without measurement"},
     {"depth-range",
      "depth is measured where no RGB-D sensor for rooms measures: the scale is probably wrong"},
-    {"depth-scale", "ground truth says that depth has another scale"},
+    {"depth-scale", "the ground truth contradicts the scale of depth"},
     {"depth-along-ray", "depth is the distance along the ray of a pixel, not its z component"},
-    {"depth-time-offset", "depth images were taken at other times than their stamps and delay say"},
+    {"depth-time-offset", "depth images were taken at times that differ from their stamps and delay"},
     {"depth-misregistered", "edges of depth and colour do not coincide"},
     // Ground truth
     {"truth-none", "there is no ground truth"},
@@ -67,7 +67,7 @@ constexpr auto kCodes = std::to_array<FindingCode>({
     {"truth-position-axes", "the positions have other axes than the rotations, such as left-handed ones"},
     {"truth-constant", "the ground truth stands still while the images move"},
     {"truth-inconsistent", "the ground truth explains the images no better than no motion at all"},
-    {"focal-length", "ground truth says that the focal length is another"},
+    {"focal-length", "the ground truth contradicts the focal length"},
     {"image-size", "the intrinsics are those of images of another size"},
     {"reprojection-untested", "no pair of frames could test the calibration"},
     // IMU

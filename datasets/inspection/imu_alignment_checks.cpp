@@ -235,7 +235,7 @@ void check_imu_alignment(const recording::Recording& recording, const Workers& w
   const ComparedTurns compared = compare_turns(recording, workers, options, out);
   if (!compared.fit) {
     out.add("imu-alignment-untested", Severity::note,
-            "the camera turns too little, or too few turns are known, to compare the IMU with it");
+            "the camera rotates too little, or too few rotations are measured, to compare the IMU with it");
     return;
   }
   if (compared.fit->offset_found) {

@@ -176,7 +176,7 @@ std::optional<recording::Recording> leave_out_imu_faults(const recording::Record
   if (faults.size() > kMaxListed) told += fmt::format(", and {} more", faults.size() - kMaxListed);
   out.add("imu-spike", Severity::warning,
           fmt::format("{} of {} samples are no measurement: {}", faults.size(), recording.imu.size(), told),
-          "remove their rows from the IMU's file; what is said of the IMU here leaves them out");
+          "remove their rows from the IMU's file; the other checks of the IMU exclude them");
   recording::Recording sound = recording;
   sound.imu = measures::without_faults(recording.imu, faults);
   return sound;

@@ -224,6 +224,24 @@ std::vector<double> geometric_row(double low, double high, int count) {
   return values;
 }
 
+FittedParameter fit_scale(const WarpTest& test, const measures::Reading& base, const std::vector<double>& row,
+                          double measures::Reading::*scale) {
+  return fit(test, base, row, [&](double value) {
+    measures::Reading reading = base;
+    reading.*scale *= value;
+    return reading;
+  });
+}
+
+FittedParameter fit_shift(const WarpTest& test, const measures::Reading& base,
+                          std::int64_t measures::Reading::*shift_ns) {
+  return fit(test, base, row_of_shifts(), [&](double value) {
+    measures::Reading reading = base;
+    reading.*shift_ns += std::llround(1e9 * value);
+    return reading;
+  });
+}
+
 }  // namespace
 
 WarpTest::WarpTest(const recording::Recording& recording, std::vector<measures::WarpPair> pairs,
@@ -288,43 +306,23 @@ std::vector<Misreading> misreadings(const PinholeCamera& camera) {
 }
 
 FittedParameter fit_depth_scale(const WarpTest& test, const measures::Reading& base) {
-  return fit(test, base, geometric_row(0.125, 8, 37), [&](double value) {
-    measures::Reading reading = base;
-    reading.depth_scale *= value;
-    return reading;
-  });
+  return fit_scale(test, base, geometric_row(0.125, 8, 37), &measures::Reading::depth_scale);
 }
 
 FittedParameter fit_focal_scale(const WarpTest& test, const measures::Reading& base) {
-  return fit(test, base, geometric_row(0.7, 1.0 / 0.7, 17), [&](double value) {
-    measures::Reading reading = base;
-    reading.focal_scale *= value;
-    return reading;
-  });
+  return fit_scale(test, base, geometric_row(0.7, 1.0 / 0.7, 17), &measures::Reading::focal_scale);
 }
 
 FittedParameter fit_image_scale(const WarpTest& test, const measures::Reading& base) {
-  return fit(test, base, geometric_row(0.2, 5, 31), [&](double value) {
-    measures::Reading reading = base;
-    reading.image_scale *= value;
-    return reading;
-  });
+  return fit_scale(test, base, geometric_row(0.2, 5, 31), &measures::Reading::image_scale);
 }
 
 FittedParameter fit_truth_shift(const WarpTest& test, const measures::Reading& base) {
-  return fit(test, base, row_of_shifts(), [&](double value) {
-    measures::Reading reading = base;
-    reading.truth_shift_ns += std::llround(1e9 * value);
-    return reading;
-  });
+  return fit_shift(test, base, &measures::Reading::truth_shift_ns);
 }
 
 FittedParameter fit_depth_shift(const WarpTest& test, const measures::Reading& base) {
-  return fit(test, base, row_of_shifts(), [&](double value) {
-    measures::Reading reading = base;
-    reading.depth_shift_ns += std::llround(1e9 * value);
-    return reading;
-  });
+  return fit_shift(test, base, &measures::Reading::depth_shift_ns);
 }
 
 }  // namespace fusebench::inspection

@@ -10,16 +10,6 @@ namespace fusebench::inspection {
 
 namespace {
 
-// Of 17 recordings whose depth is right, simulated and real, fast and slow, no fit moved the edges by 3.5 px
-// and made nine frames of ten better (delays of depth move them to either side); without registration, with
-// the focal length or the turn of another device, all of 6 did.
-constexpr double kMinMoved_px = 3.5;
-// Depth that is taken later or earlier than colour lies beside it where the camera turns: by 18 ms on
-// freiburg1.
-constexpr double kDelay_s = 0.02;
-// Where no one camera fits, few frames are better when moved by chance: five of a right recording were.
-constexpr std::size_t kMinFrames = 12;
-
 std::string proposal(const calibration::DepthCamera& camera) {
   const Vector3d& depth_in_color_m = camera.T_color_depth.translation;
   return fmt::format(
@@ -37,11 +27,7 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   const auto fit = measures::fit_registration(recording, workers);
   if (!fit) return;
   out.registration = fit;
-  const double moved_by_delay_px = kDelay_s * out.motion.angular_mean_radps * recording.rig.camera.fx_px;
-  if (fit->moved_px < std::max(kMinMoved_px, moved_by_delay_px)) return;
-  if (!fit->is_better_all_over()) return;
-  const bool one_camera = fit->is_one_camera();
-  if (!one_camera && fit->frames < kMinFrames) return;
+  if (!fit->is_significant() || !fit->is_better_all_over()) return;
   // Points of one frame that are warped into another have the depth camera's focal length as well.
   for (Finding& finding : out.findings) {
     if (finding.code == "focal-length")
@@ -49,11 +35,8 @@ void check_registration(const recording::Recording& recording, const Workers& wo
           "correct the depth camera first (depth-misregistered): it may be its focal length that is wrong";
   }
   out.add("depth-misregistered", Severity::warning,
-          one_camera
-              ? fmt::format("edges of depth lie {:.0f} px from those of colour; {} would bring them there",
-                            fit->moved_px, proposal(fit->fitted))
-              : "edges of depth do not lie on edges of colour, and no place of the depth camera was found "
-                "that would bring all of them there",
+          fmt::format("edges of depth are {:.0f} px from those of colour; {} would align them", fit->moved_px,
+                      proposal(fit->fitted)),
           "check [depth] and T_color_depth in calibration.toml, and that depth is registered; `fusebench "
           "calibrate RECORDING --depth-camera` estimates the depth camera");
 }

@@ -138,8 +138,7 @@ Finding finding_of_time(const std::string& code, double value_s, double frame_s,
   if (code == "depth-time-offset")
     return {
         code, Severity::error,
-        fmt::format("depth images were taken {:.0f} ms {} than their stamps and delay_s say: shifting them "
-                    "{}",
+        fmt::format("depth images were taken {:.0f} ms {} than their stamps and delay_s: shifting them {}",
                     1e3 * std::abs(value_s), value_s > 0 ? "later" : "earlier", better),
         fmt::format("add {:+.3f} to delay_s in [depth] of calibration.toml, or correct the stamps of depth",
                     value_s)};
@@ -287,7 +286,7 @@ void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& o
   if (median_motion_rad(measured, out.depth.median_m) < kMinMotion_rad) return;
   out.add("truth-inconsistent", Severity::error,
           fmt::format("the ground truth explains the images no better than no motion at all: warped frames "
-                      "differ {:.1f} times as much, and no known misreading explains it",
+                      "differ {:.1f} times as much, and none of the tested misreadings explains it",
                       1 / measured.static_factor),
           "check that the ground truth is that of the colour camera, of this recording and of its clock");
 }

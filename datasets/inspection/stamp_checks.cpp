@@ -59,7 +59,8 @@ bool report_unit(std::string_view code, std::string_view list, const StampMeasur
   out.add(code, Severity::error,
           fmt::format("the median interval between {} is {:.6g} s ({:.4g} Hz): these look like {}", list,
                       stamps.median_interval_s, stamps.rate_hz, unit_name(*factor)),
-          fmt::format("multiply the stamps by {:g}, or say their unit to whatever wrote them", *factor));
+          fmt::format("multiply the stamps by {:g}, or correct the unit in the program that wrote them",
+                      *factor));
   return true;
 }
 
@@ -204,8 +205,9 @@ void check_frame_stamps(const recording::Recording& recording, Inspection& out) 
 void check_truth_stamps(const recording::Recording& recording, Inspection& out) {
   const Trajectory& truth = recording.ground_truth;
   if (truth.empty()) {
-    out.add("truth-none", Severity::note,
-            "there is no ground truth: trajectories cannot be measured, and the calibration is tested less");
+    out.add(
+        "truth-none", Severity::note,
+        "there is no ground truth: trajectory errors cannot be computed, and the calibration is tested less");
     return;
   }
   TruthMeasurement& measured = out.truth.emplace();
@@ -275,7 +277,8 @@ void check_imu_stamps(const recording::Recording& recording, Inspection& out) {
                         "after the first frame",
                         stamps.gaps, stamps.missing, stamps.max_interval_s, sample,
                         seconds_between(recording.frames.front().timestamp_ns, stamps_ns[sample])),
-            "motion within the pause is unknown to an inertial prior; use --frames A:B to keep out of it");
+            "an inertial prior has no information on the motion within the pause; use --frames A:B to "
+            "exclude it");
   }
   if (stamps.rate_hz > 0 && stamps.rate_hz < 90) {
     out.add("imu-rate-low", Severity::warning,

@@ -15,7 +15,7 @@ namespace fusebench::reading {
 
 namespace {
 
-constexpr std::string_view kColumns = "timestamp filename timestamp filename";
+constexpr std::string_view kColumns = "timestamp filename timestamp filename ...";
 
 bool in_depth_folder(std::string_view name) {
   return io::lower_case(std::filesystem::path(name).parent_path().filename().string()).starts_with("depth");
@@ -50,7 +50,7 @@ Result<AssociatedRow> associated_row(const io::TextTable& table, const std::file
   const std::size_t depth = *depth_first ? 0 : 2;
   const std::size_t color = 2 - depth;
   return AssociatedRow{std::string(table.text(color)), std::string(table.text(depth)),
-                       folder / table.text(color + 1), folder / table.text(depth + 1)};
+                       folder / table.text(color + 1), folder / table.text(depth + 1), table.has(4)};
 }
 
 Result<void> check_images_exist(const std::filesystem::path& list, int line, const AssociatedRow& row) {
@@ -83,7 +83,8 @@ Result<RowTimes> times_of(const io::TextTable& table, const AssociatedRow& row) 
 
 Result<void> add_associated_frames(const std::filesystem::path& list, recording::Recording& recording) {
   return for_each_associated_row(
-      list, [&](const io::TextTable& table, const AssociatedRow& row) -> Result<void> {
+      list,
+      [&](const io::TextTable& table, const AssociatedRow& row) -> Result<void> {
         const auto times = times_of(table, row);
         if (!times) return tl::unexpected(times.error());
         auto& frames = recording.frames;
@@ -96,18 +97,21 @@ Result<void> add_associated_frames(const std::filesystem::path& list, recording:
         frames.push_back({times->color_ns, times->depth_ns, times->color_ns, times->depth_ns, row.color_file,
                           row.depth_file});
         return {};
-      });
+      },
+      recording.warnings);
 }
 
 Result<void> for_each_associated_row(
     const std::filesystem::path& list,
-    const std::function<Result<void>(const io::TextTable& table, const AssociatedRow& row)>& use) {
-  return io::for_each_row(list, kColumns, [&](const io::TextTable& table) -> Result<void> {
+    const std::function<Result<void>(const io::TextTable& table, const AssociatedRow& row)>& use,
+    std::vector<std::string>& warnings) {
+  const auto take = [&](const io::TextTable& table) -> Result<void> {
     const auto row = associated_row(table, list.parent_path());
     if (!row) return tl::unexpected(row.error());
     if (auto there = check_images_exist(list, table.line(), *row); !there) return there;
     return use(table, *row);
-  });
+  };
+  return io::for_each_row(list, kColumns, take, warnings);
 }
 
 std::optional<AssociatedRow> first_associated_row(const std::filesystem::path& list) {

@@ -11,7 +11,7 @@ namespace fusebench::reading {
 
 namespace {
 
-constexpr std::string_view kListColumns = "timestamp filename";
+constexpr std::string_view kListColumns = "timestamp filename ...";
 
 /// Adds the image of each row to `listed`.
 io::StampedRow listing_of(const std::filesystem::path& list, const std::filesystem::path& images,
@@ -47,10 +47,11 @@ Result<void> check_stays_inside(const io::TextTable& table, const std::filesyste
 }
 
 Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
-                                                 const std::filesystem::path& images, io::TimeUnit unit) {
+                                                 const std::filesystem::path& images, io::TimeUnit unit,
+                                                 std::vector<std::string>& warnings) {
   std::vector<ListedImage> listed;
   const Result<void> done = io::for_each_stamped_row(list, kListColumns, io::TimeOrder::increasing,
-                                                     listing_of(list, images, listed), unit);
+                                                     listing_of(list, images, listed), unit, &warnings);
   if (!done) return tl::unexpected(done.error());
   return listed;
 }

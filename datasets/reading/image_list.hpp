@@ -22,11 +22,13 @@ struct ListedImage {
   std::filesystem::path file;
 };
 
-/// "timestamp filename" in strictly increasing time; names are relative to `images`. Errors name file:line:
-/// data_missing (the list or an image), data_corrupt (a row, the order in time, an empty list).
+/// "timestamp filename" in strictly increasing time; names are relative to `images`. A warning counts more
+/// columns than these two. Errors name file:line: data_missing (the list or an image), data_corrupt (a row,
+/// the order in time, an empty list).
 [[nodiscard]] Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
                                                                const std::filesystem::path& images,
-                                                               io::TimeUnit unit);
+                                                               io::TimeUnit unit,
+                                                               std::vector<std::string>& warnings);
 
 /// The same with names relative to the list's folder, in seconds. Stamps that can only be milli-, micro- or
 /// nanoseconds since 1970 (io::unit_by_size()) are read as such, with a warning.

@@ -12,6 +12,7 @@
 #include "core/base/printable.hpp"
 #include "core/io/bounded_text.hpp"
 #include "datasets/reading/text_matrix.hpp"
+#include "datasets/recording/read_options.hpp"
 
 namespace fusebench::reading {
 
@@ -68,6 +69,18 @@ Result<std::vector<double>> json_numbers(const nlohmann::json& object, const std
     if (numbers.size() == count) return numbers;
   }
   return wrong(file, fmt::format("needs the key {}, a list of {} finite numbers", key, count));
+}
+
+Result<std::optional<double>> json_frame_rate(const nlohmann::json& object, const std::filesystem::path& file,
+                                              std::vector<std::string>& warnings) {
+  if (!object.contains("fps")) return std::optional<double>();
+  const auto rate_hz = json_number(object, "fps", file);
+  if (!rate_hz) return tl::unexpected(rate_hz.error());
+  if (recording::is_frame_rate(*rate_hz)) return std::optional(*rate_hz);
+  warnings.push_back(fmt::format(
+      "{}: fps = {} is not used (allowed: 1 to 1000); --frame-rate gives the rate of frames without stamps",
+      file.string(), *rate_hz));
+  return std::optional<double>();
 }
 
 void warn_of_unused_keys(const nlohmann::json& object, std::span<const std::string_view> known,

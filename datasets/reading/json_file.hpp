@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,12 @@ namespace fusebench::reading {
                                          const std::filesystem::path& file);
 [[nodiscard]] Result<std::vector<double>> json_numbers(const nlohmann::json& object, const std::string& key,
                                                        std::size_t count, const std::filesystem::path& file);
+
+/// The key fps. Nothing if it is not there, or, with a warning, if it is no frame rate: recorders that do not
+/// know it write 0. Error data_corrupt: not a finite number.
+[[nodiscard]] Result<std::optional<double>> json_frame_rate(const nlohmann::json& object,
+                                                            const std::filesystem::path& file,
+                                                            std::vector<std::string>& warnings);
 
 /// Warns of the keys of an object that are not among `known`: they are not used.
 void warn_of_unused_keys(const nlohmann::json& object, std::span<const std::string_view> known,

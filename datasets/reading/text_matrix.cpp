@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/io/row_text.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 
@@ -16,17 +16,9 @@ namespace {
 
 constexpr double kMaxPixels = 1e6;
 
-/// How C libraries print numbers that are none.
-bool is_no_number(std::string_view text) {
-  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
-  constexpr std::array<std::string_view, 10> kWords = {"nan", "inf",    "NaN",    "NAN",     "Inf",
-                                                       "INF", "1.#IND", "1.#INF", "1.#QNAN", "infinity"};
-  return std::ranges::any_of(kWords, [&](std::string_view word) { return text.starts_with(word); });
-}
-
 Result<void> append_row(const io::TextTable& table, std::size_t columns, std::vector<double>& values) {
   for (std::size_t column = 0; column < columns; ++column) {
-    if (is_no_number(table.text(column))) {
+    if (io::is_missing(table.text(column)) || io::is_infinite(table.text(column))) {
       values.push_back(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
@@ -65,7 +57,7 @@ Result<std::optional<SE3>> read_pose_matrix(const std::filesystem::path& file) {
   const auto values = read_matrix(file, 4, 4);
   if (!values) return tl::unexpected(values.error());
   if (!std::ranges::all_of(*values, [](double value) { return std::isfinite(value); })) return std::nullopt;
-  const auto pose = calibration::rigid_transform(std::span(*values).first<12>());
+  const auto pose = calibration::rigid_transform(std::span(*values).first<16>());
   if (pose) return std::optional<SE3>(*pose);
   return fail(ErrorCode::data_corrupt, fmt::format("{}: the pose is no rigid transform ({})", file.string(),
                                                    calibration::kRigidTransformRule));

@@ -14,7 +14,7 @@
 
 namespace fusebench::reading {
 
-/// Row by row; a number that is none ("nan", "-inf", "-1.#IND") is a NaN. Errors name file:line:
+/// Row by row; a number that is missing or infinite (io/row_text.hpp) is a NaN. Errors name file:line:
 /// data_missing, data_corrupt (another number of rows or columns, what is no number).
 [[nodiscard]] Result<std::vector<double>> read_matrix(const std::filesystem::path& file, std::size_t rows,
                                                       std::size_t columns);

@@ -5,16 +5,14 @@
 namespace fusebench::recording {
 
 Result<void> check_read_options(const ReadOptions& options) {
-  // As in calibration.toml.
-  if (const auto& units = options.depth_units_per_metre; units && !(*units >= 1e-3 && *units <= 1e6)) {
-    return fail(ErrorCode::configuration,
-                fmt::format("depth_units_per_metre = {} (allowed: 0.001 to 1e6)", *units));
-  }
+  if (const auto& units = options.depth_units_per_metre; units && !calibration::is_units_per_metre(*units))
+    return calibration::no_units_per_metre(ErrorCode::configuration, "depth_units_per_metre (--depth-units)",
+                                           *units);
   if (!(options.max_difference_s > 0 && options.max_difference_s <= 1)) {
     return fail(ErrorCode::configuration,
                 fmt::format("max_difference_s = {} (allowed: above 0, up to 1)", options.max_difference_s));
   }
-  if (const auto& rate_hz = options.frame_rate_hz; rate_hz && !(*rate_hz >= 1 && *rate_hz <= 1000))
+  if (const auto& rate_hz = options.frame_rate_hz; rate_hz && !is_frame_rate(*rate_hz))
     return fail(ErrorCode::configuration, fmt::format("frame_rate_hz = {} (allowed: 1 to 1000)", *rate_hz));
   return {};
 }

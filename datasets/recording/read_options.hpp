@@ -16,6 +16,8 @@ namespace fusebench::recording {
 /// Of most cameras.
 inline constexpr double kUsualFrameRate_hz = 30;
 
+[[nodiscard]] inline bool is_frame_rate(double rate_hz) { return rate_hz >= 1 && rate_hz <= 1000; }
+
 /// Each reader uses those that apply to its format.
 struct ReadOptions {
   std::optional<calibration::RigCalibration>

@@ -40,7 +40,7 @@ Result<void> check_rate(const SimulationOptions& o) {
   return fail(ErrorCode::configuration,
               fmt::format("rate_hz = {} (allowed in the {} layout: {} .. {})", o.rate_hz, layout.name,
                           layout.lowest_rate_hz, layout.highest_rate_hz),
-              "readers must be able to tell the times of the images");
+              "images must have different stamps in the file format");
 }
 
 Result<void> check_options(const SimulationOptions& o) {
@@ -219,8 +219,7 @@ Result<bool> is_there(const fs::path& folder, const std::string& identity) {
           "remove the folder, and it is made again");
     }
   }
-  return fail(ErrorCode::usage,
-              fmt::format("{}: exists and is not the recording that is asked for", folder.string()),
+  return fail(ErrorCode::usage, fmt::format("{}: exists and is not the requested recording", folder.string()),
               "choose another folder, or remove this one");
 }
 

@@ -10,6 +10,7 @@
 #include "core/config/config.hpp"
 #include "core/prediction/imu_preintegration.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"
+#include "eval/preparation/sensor_timing.hpp"
 
 namespace fusebench::batch_estimation {
 
@@ -35,45 +36,9 @@ struct Guess {
   Vector3d timing_s = Vector3d::Zero();  ///< read-out of colour, of depth, delay of depth
 };
 
-Vector3d values_of(const SensorTiming& timing) {
-  return {timing.color_readout_s, timing.depth_readout_s, timing.depth_delay_s};
-}
-
-Vector3d sigmas_of(const SensorTiming& timing) {
-  return {timing.color_readout_sigma_s, timing.depth_readout_sigma_s, timing.depth_delay_sigma_s};
-}
-
 Vector3d timing_sigma_s(const smoother::BatchEstimate& estimate) {
   return estimate.common_covariance.diagonal().segment<3>(smoother::kCommonTiming).cwiseSqrt();
 }
-
-/// How much of a change of the timing a round finds. The model and the patches are made of images of the same
-/// timing and take a part of its error with them, so that a round finds less than is missing: of the read-out
-/// of colour about a half. Known from the steps of rounds that held different timings.
-class Response {
- public:
-  /// A round that held timing_s found that it must change by a step.
-  void take(const Vector3d& timing_s, const Vector3d& step_s, const Vector3d& sigma_s) {
-    constexpr double kLeast = 0.4;
-    if (known_) {
-      for (int i = 0; i < 3; ++i) {
-        const double change_s = timing_s[i] - timing_s_[i];
-        if (std::abs(change_s) > sigma_s[i])
-          share_[i] = std::clamp((step_s_[i] - step_s[i]) / change_s, kLeast, 1.0);
-      }
-    }
-    known_ = true;
-    timing_s_ = timing_s;
-    step_s_ = step_s;
-  }
-  [[nodiscard]] const Vector3d& share() const { return share_; }
-
- private:
-  bool known_ = false;
-  Vector3d timing_s_ = Vector3d::Zero();
-  Vector3d step_s_ = Vector3d::Zero();
-  Vector3d share_ = Vector3d::Ones();
-};
 
 /// As if the round had found all that is missing.
 void complete_timing(const Vector3d& share, smoother::BatchEstimate& estimate) {
@@ -234,8 +199,9 @@ smoother::BatchOptions batch_options(const recording::Recording& recording, cons
   const double scale_prior = recording.rig.imu_axes_are_exact ? 0.0 : options.scale_prior;
   batch.gyroscope_scale_prior = scale_prior;
   batch.accelerometer_scale_prior = scale_prior;
-  batch.timing_prior_s = sigmas_of(recording.rig.timing);
-  batch.timing_expected_s = values_of(recording.rig.timing) - guess.timing_s;
+  const preparation::TimingEstimate timing = preparation::timing_of(recording.rig.timing);
+  batch.timing_prior_s = timing.sigma_s;
+  batch.timing_expected_s = timing.value_s - guess.timing_s;
   return batch;
 }
 
@@ -260,8 +226,10 @@ Result<CameraImuCalibration> calibrate(const recording::Recording& recording, co
   result.T_imu_camera_before = recording.rig.T_imu_camera;
   result.time_offset_before_s = told.time_offset_s;
   result.timing_before = recording.rig.timing;
-  Guess guess{recording.rig.T_imu_camera, 0, {}, values_of(recording.rig.timing)};
-  Response response;
+  Guess guess{recording.rig.T_imu_camera, 0, {}, preparation::timing_of(recording.rig.timing).value_s};
+  // The model and the patches are made of images of the same timing and take a part of its error with them,
+  // so that a round finds less than is missing: of the read-out of colour about a half.
+  preparation::TimingResponse response(0.4);
   for (int round = 0; round < options.max_rounds && !result.converged; ++round) {
     const recording::Recording guessed = with_guess(recording, guess, round > 0);
     config::Config exaggerated = config;

@@ -35,7 +35,7 @@ namespace fusebench::cli {
 
 namespace {
 
-/// What is not known, or not there, is no text.
+/// Values that are not given are an empty text.
 using Cell = std::optional<std::string>;
 
 /// A list as rows under named columns; every way of printing it starts from here.
@@ -277,18 +277,18 @@ console::Verb add_list_verb(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember({"variants", "systems", "metrics", "recordings", "suites", "options", "runs"}));
   verb->add_option("OF", options->of,
-                   "Of runs: their folder [results/runs]; else a text: only rows that contain it")
+                   "With runs: their folder [results/runs]; otherwise a text: only rows that contain it")
       ->type_name("FOLDER|TEXT");
-  verb->add_option("-o,--only", options->status, "Of runs: those that ended so: ok, lost or failed")
+  verb->add_option("-o,--only", options->status, "With runs: only runs with this status: ok, lost or failed")
       ->check(CLI::IsMember({"ok", "lost", "failed"}))
       ->type_name("STATUS");
   verb->add_flag("--verify", options->verify,
-                 "Of runs: reads every file and compares it with what the run wrote; otherwise only sizes");
+                 "With runs: compares the contents of every file with its fingerprint; otherwise only sizes");
   console::add_data_option(*verb, options->data);
   verb->add_option("--configs", options->configs,
                    "Folder that holds suites/; default: configs here, above here or above the program")
       ->type_name("DIR");
-  verb->add_flag("--markdown", options->markdown, "As a page of the documentation");
+  verb->add_flag("--markdown", options->markdown, "Prints a page of the documentation");
   console::add_json_flag(*verb, options->json);
   console::add_width_option(*verb, options->width);
   return {verb, [options] { return list(*options); }};

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/stack_size.hpp"
 #include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/console/usage_error.hpp"
@@ -44,9 +46,18 @@ int finish(const Error& error) {
   return console::stop_requested() ? console::kExitInterrupted : exit_code(error.code);
 }
 
+/// "eval mesh"
+std::string name_of(const CLI::App& verb) {
+  const std::vector<CLI::App*> inner = verb.get_subcommands();
+  return inner.empty() ? verb.get_name() : verb.get_name() + " " + name_of(*inner.front());
+}
+
 int run_verb(const std::vector<console::Verb>& verbs) {
   for (const console::Verb& verb : verbs) {
     if (!verb.app->parsed()) continue;
+    const console::Progress working(name_of(*verb.app));
+    std::optional<console::Heartbeat> heartbeat;
+    if (!verb.forks) heartbeat.emplace();
     const auto done = verb.run();
     return done ? *done : finish(done.error());
   }

@@ -1,4 +1,4 @@
-// Verbs that say what there is.
+// Verbs that list variants, options and results.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"

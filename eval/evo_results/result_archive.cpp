@@ -88,7 +88,8 @@ Result<EvoResult> read_result(const std::filesystem::path& file) {
   if (!entries) return tl::unexpected(entries.error());
   const auto info = parsed_object(*entries, "info.json");
   const auto stats = parsed_object(*entries, "stats.json");
-  if (!info || !stats) return no_result(file, "has no info.json and stats.json that say what was compared");
+  if (!info || !stats)
+    return no_result(file, "has no info.json and stats.json, which describe the comparison");
   EvoResult result;
   result.title = text_of(*info, "title");
   result.reference_name = text_of(*info, "ref_name");

@@ -49,7 +49,7 @@ Result<void> check_labels(const std::vector<LabelledResult>& results) {
   for (const LabelledResult& entry : results) {
     if (labels.insert(entry.label).second) continue;
     return fail(ErrorCode::usage, fmt::format("two results are of an estimate '{}'", entry.label),
-                "--use_filenames tells them apart by their archives");
+                "--use_filenames names them by their archives");
   }
   return {};
 }

@@ -164,7 +164,7 @@ Result<ZipEntry> unpacked(const std::filesystem::path& file, std::string_view by
     return damaged(fmt::format("is packed by method {} (stored is 0, deflated 8)", listed.method));
   if (listed.header > bytes.size() || bytes.size() - listed.header < kLocalHeaderBytes ||
       number_at(bytes, listed.header, 4) != kLocalHeader)
-    return damaged("is not where the directory of the archive says");
+    return damaged("is not at the offset in the archive's directory");
   const std::size_t begin = listed.header + kLocalHeaderBytes + number_at(bytes, listed.header + 26, 2) +
                             number_at(bytes, listed.header + 28, 2);
   if (begin > bytes.size() || bytes.size() - begin < listed.packed_size) return damaged("is cut off");
@@ -174,7 +174,7 @@ Result<ZipEntry> unpacked(const std::filesystem::path& file, std::string_view by
     plain = inflated(packed, listed.size);
   else if (packed.size() == listed.size)
     plain = std::string(packed);
-  if (!plain) return damaged("does not unpack to the size that the directory says");
+  if (!plain) return damaged("does not unpack to the size in the archive's directory");
   if (checksum(*plain) != listed.checksum) return damaged("is damaged (its CRC-32 differs)");
   return ZipEntry{listed.name, std::move(*plain)};
 }

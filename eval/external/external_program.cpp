@@ -225,7 +225,7 @@ void ask_version(ExternalProgram& program) {
     program.absent = end.error().message;
   } else if (!end->succeeded) {
     const std::string said = end->output.substr(0, end->output.find_last_not_of('\n') + 1);
-    program.absent = fmt::format("its version cannot be asked: {} ({})", fmt::join(asked, " "),
+    program.absent = fmt::format("its version cannot be read: {} ({})", fmt::join(asked, " "),
                                  said.empty() ? end->how : said.substr(said.rfind('\n') + 1));
   } else {
     program.version = end->output.substr(0, end->output.find('\n'));
@@ -272,7 +272,7 @@ Result<ExternalProgram> read_external_program(const fs::path& file) {
         ErrorCode::configuration,
         fmt::format("{}: repetitions = {} of a program that is not deterministic", file.string(),
                     program.repetitions),
-        fmt::format("at least {}, so that its range is known; or deterministic = true", kFewestRepetitions));
+        fmt::format("at least {}, so that tables have a range; or deterministic = true", kFewestRepetitions));
   }
   std::error_code ignored;
   program.file = fs::absolute(file, ignored);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/mesh/mesh_file.hpp"
-#include "core/mesh/scaled_mesh.hpp"
 
 namespace fusebench::external {
 

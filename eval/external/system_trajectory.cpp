@@ -28,11 +28,11 @@ Result<void> check_scale(const Trajectory& poses, const recording::Recording& re
   const double is_m = trajectory::extent_m(poses);
   const double should_be_m = trajectory::extent_m(trajectory::within_time_of(recording.ground_truth, poses));
   if (!(should_be_m > 0)) return {};
-  const std::string extents =
-      fmt::format("{}: the poses extend over {:.3g} m, and the truth over {:.3g} m", file, is_m, should_be_m);
+  const std::string extents = fmt::format(
+      "{}: the poses extend over {:.3g} m, and the ground truth over {:.3g} m", file, is_m, should_be_m);
   if (is_m > kFactor * should_be_m)
     return fail(ErrorCode::data_corrupt, extents + ": is the unit of the trajectory right (m or mm)?",
-                "`unit` in [trajectory] of a system, or `import --unit`, says it");
+                "set `unit` in [trajectory] of the system, or pass `import --unit`");
   if (is_m > 0 && kFactor * is_m < should_be_m)
     warnings.push_back(extents + ": is the unit of the trajectory right (m or mm)?");
   return {};

@@ -44,43 +44,42 @@ std::string shown(const registry::RunMetric& metric, double value) {
   return registry::shown_text(metric, value) + name_and_unit(metric).second;
 }
 
-/// What a ratio is worth.
-std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& ratio) {
-  if (!ratio.interval) return ". One recording each: no evidence that the order is the same on others.";
-  constexpr std::size_t kFewest = 3;  // of two, the interval spans orders of magnitude
-  if (ratio.count < kFewest)
-    return fmt::format(" over {}: too few to tell it from the differences between recordings.",
-                       counted(ratio.count, "recording"));
-  const auto& [low, high] = *ratio.interval;
-  std::string text =
-      fmt::format(" (95 % interval {:.2f} to {:.2f} over {})", low, high, counted(ratio.count, "recording"));
-  text += low > 1 || high < 1 ? ": more than the differences between recordings explain."
-                              : ": the interval holds 1, so it may be noise between recordings.";
-  if (ranking.configurations.size() > 2) {
-    text += fmt::format(" The interval is not corrected for picking the best of {}.",
-                        ranking.configurations.size());
-  }
+/// "1.15 times the best of each recording (95 % interval 1.05 to 1.30)".
+std::string ratio_text(const aggregate::RatioMean& mean) {
+  std::string text = fmt::format("{:.2f} times the best of each recording", *mean.ratio);
+  if (mean.interval)
+    text += fmt::format(" (95 % interval {:.2f} to {:.2f})", (*mean.interval)[0], (*mean.interval)[1]);
   return text;
 }
 
-/// "1.22 cm [1.10, 1.40]".
-std::string shown_spread(const registry::RunMetric& metric, const registry::MedianRange& spread) {
-  return fmt::format("{} [{}, {}]", shown(metric, spread.median), registry::shown_text(metric, spread.least),
-                     registry::shown_text(metric, spread.most));
+/// What the order is worth, of configurations that do not tie.
+std::string evidence_of(const Ranking& ranking) {
+  constexpr std::size_t kFewest = 3;  // of two, the bootstrap has three different samples
+  if (ranking.recordings == 1) return " One recording: no evidence that the order is the same on others.";
+  if (ranking.recordings < kFewest)
+    return fmt::format(" {} are too few to tell it from the differences between recordings.",
+                       counted(ranking.recordings, "recording"));
+  std::string text = " Recordings and replicates drawn by chance do not explain the difference.";
+  if (ranking.configurations.size() > 2)
+    text += fmt::format(" Not corrected for picking the best of {}.", ranking.configurations.size());
+  return text;
 }
 
-/// The best one and those that chance may have put behind it.
+/// best: of the ranking, which others tie with.
 std::string tie_sentence(const Ranking& ranking, const std::string& name, const std::string& where) {
+  const RankedConfiguration& best = ranking.configurations.front();
   std::vector<std::string> tied;
   for (const RankedConfiguration& configuration : ranking.configurations) {
-    if (configuration.ties_with(ranking.configurations.front()))
-      tied.push_back(
-          fmt::format("{} {}", configuration.label, shown_spread(*ranking.metric, *configuration.spread)));
+    if (!configuration.mean.tied) continue;
+    std::string text = configuration.label;
+    if (configuration.value) text += " " + shown(*ranking.metric, *configuration.value);
+    tied.push_back(fmt::format("{}, {}", text, ratio_text(configuration.mean)));
   }
-  return fmt::format(
-      "A tie for the smallest {} on {}: {}. Their ranges over replicates overlap, so that chance "
-      "explains the difference.",
-      name, where, list_of(tied, ", "));
+  return fmt::format("A tie for the smallest {} on {}: {}. {}", name, where, list_of(tied, "; "),
+                     best.mean.interval
+                         ? "The 95 % intervals of the ratios between them contain 1 (bootstrap over "
+                           "recordings and replicates)."
+                         : "Their numbers are equal.");
 }
 
 std::string best_sentence(const Ranking& ranking) {
@@ -91,8 +90,8 @@ std::string best_sentence(const Ranking& ranking) {
                           : fmt::format("{} {} recordings", ranking.recordings, ranking.data_word());
   if (!ranking.frames.empty()) where += ", " + ranking.frames;
   if (!best.value) {
-    return fmt::format("Nothing has an {} on all of {}; {} has it on most, {}.", name, where, best.label,
-                       best.recordings);
+    return fmt::format("No configuration has an {} on all of {}; {} has it on most, {}.", name, where,
+                       best.label, best.recordings);
   }
   const std::string number = shown(*ranking.metric, *best.value) +
                              (ranking.recordings > 1 ? " (geometric mean over recordings)" : "");
@@ -101,21 +100,14 @@ std::string best_sentence(const Ranking& ranking) {
                        number, where);
   }
   const RankedConfiguration& second = ranking.configurations[1];
-  const auto is_tied = [&](const RankedConfiguration& other) { return other.ties_with(best); };
-  if (std::ranges::any_of(ranking.configurations.begin() + 1, ranking.configurations.end(), is_tied))
-    return tie_sentence(ranking, name, where);
-  if (second.value && second.to_best) {
-    if (*second.value == *best.value)
-      return fmt::format("{} and {} have the same {} on {}: {}.", best.label, second.label, name, where,
-                         number);
-    return fmt::format("{} has the smallest {} on {}: {}. Next is {} with {}, {:.2f} times as much{}",
-                       best.label, name, where, number, second.label, shown(*ranking.metric, *second.value),
-                       second.to_best->ratio, evidence_of(ranking, *second.to_best));
+  if (second.mean.tied) return tie_sentence(ranking, name, where);
+  if (!second.value) {
+    return fmt::format("{} alone has an {} on all of {}: {}. Next is {}, which has it on {}.", best.label,
+                       name, where, number, second.label, second.recordings);
   }
-  std::string text = fmt::format("{} alone has an {} on all of {}: {}.", best.label, name, where, number);
-  if (!second.to_best) return text;
-  return text + fmt::format(" Where both have one, {} has {:.2f} times as much{}", second.label,
-                            second.to_best->ratio, evidence_of(ranking, *second.to_best));
+  return fmt::format("{} has the smallest {} on {}: {}, {}. Next is {} with {}, {}.{}", best.label, name,
+                     where, number, ratio_text(best.mean), second.label,
+                     shown(*ranking.metric, *second.value), ratio_text(second.mean), evidence_of(ranking));
 }
 
 std::string moment(std::filesystem::file_time_type time) {
@@ -153,9 +145,9 @@ std::vector<std::string> sentences_of(const Ranking& ranking) {
     }
   }
   if (!helped.empty() && others > 0) {
-    sentences.push_back(fmt::format(
-        "The IMU of {} was made from the ground truth: beside the others, {} better than with a real one.",
-        list_of(helped, ", "), helped.size() == 1 ? "it looks" : "they look"));
+    sentences.push_back(
+        fmt::format("The IMU of {} was made from the ground truth, so that {} smaller than with a real IMU.",
+                    list_of(helped, ", "), helped.size() == 1 ? "its error is" : "their errors are"));
   }
   return sentences;
 }
@@ -172,11 +164,8 @@ std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> r
   }
   if (final_m.empty()) return std::nullopt;
   if (final_m.size() == 1)
-    return fmt::format(
-        "With loops closed, the poses at the end have an ATE of {:.2f} cm, where those as each frame came "
-        "have "
-        "{:.2f} cm.",
-        100 * final_m.front(), 100 * online_m.front());
+    return fmt::format("With loops closed, final poses have an ATE of {:.2f} cm, and online poses {:.2f} cm.",
+                       100 * final_m.front(), 100 * online_m.front());
   std::size_t smaller = 0;
   std::vector<double> ratios;
   for (std::size_t i = 0; i < final_m.size(); ++i) {
@@ -184,8 +173,9 @@ std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> r
     ratios.push_back(final_m[i] / online_m[i]);
   }
   return fmt::format(
-      "With loops closed, the poses at the end have a smaller ATE than those as each frame came in {} of {} "
-      "runs; the median is {:.2f} times as much.",
+      "With loops closed, final poses have a smaller ATE than online poses in {} of {} runs; the median "
+      "ratio "
+      "is {:.2f}.",
       smaller, final_m.size(), metrics::statistics(ratios).median);
 }
 
@@ -218,7 +208,7 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
   }
   if (!lost.empty()) {
     sentences.push_back(
-        fmt::format("Frames without a pose, of which an ATE says nothing: {}.", list_of(lost, "; ")));
+        fmt::format("Frames without a pose, which an ATE excludes: {}.", list_of(lost, "; ")));
   }
   return sentences;
 }
@@ -241,7 +231,7 @@ std::string origin_of(std::span<const run_files::FoundRun> runs) {
     last = last ? std::max(*last, time) : time;
   }
   std::string text = programs.empty()
-                         ? "It is not known what made these runs"
+                         ? "The records do not name the program that made these runs"
                          : fmt::format("Made by {} on {}", list_of(programs, ", "), list_of(machines, "; "));
   if (first) {
     text += "; records written " + moment(*first);

@@ -10,12 +10,11 @@
 
 namespace fusebench::findings {
 
-/// Which configuration is best, by how much, and whether the difference is larger than the noise between
-/// recordings; then which poses come with an IMU made from the truth. Nothing of runs without numbers.
+/// Which configuration is best or which tie, by their mean ratios to the best of each recording; then which
+/// poses come with an IMU made from the ground truth. Nothing of runs without numbers.
 [[nodiscard]] std::vector<std::string> sentences_of(const Ranking& ranking);
 
-/// Where loops were closed: what the poses at the end have gained over those as each frame came. Nothing if
-/// no run has both.
+/// Where loops were closed: the ATE of final poses against that of online poses. Nothing if no run has both.
 [[nodiscard]] std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs);
 
 /// What was lost, in whole or in part, failed or failed undetected, and where. A sentence that nothing did if

@@ -61,7 +61,7 @@ struct Tally {
 };
 
 void add(const tables::TableRow& row, const registry::RunMetric& metric, Tally& tally) {
-  tally.cell.runs += row.members.size();
+  tally.cell.members.insert(tally.cell.members.end(), row.members.begin(), row.members.end());
   tally.cell.ok += row.ok_members;
   tally.tracked += row.tracked;
   tally.total += row.total;
@@ -106,7 +106,7 @@ void mark_best(OverviewRow& row) {
 
 }  // namespace
 
-Overview overview_of(const Ranking& ranking, const tables::ResultTable& table) {
+std::vector<OverviewRow> overview_of(const Ranking& ranking, const tables::ResultTable& table) {
   const std::vector<Window> windows = windows_of(ranking, table);
   const std::size_t methods = ranking.configurations.size();
   std::vector<std::vector<Tally>> tallies(windows.size(), std::vector<Tally>(methods));
@@ -114,21 +114,14 @@ Overview overview_of(const Ranking& ranking, const tables::ResultTable& table) {
     for (const std::size_t i : ranking.configurations[c].rows)
       add(table.rows[i], *ranking.metric, tallies[place_of(table.rows[i], windows)][c]);
   }
-  Overview overview;
-  aggregate::ReplicatedValues values;
+  std::vector<OverviewRow> rows;
   for (std::size_t w = 0; w < windows.size(); ++w) {
     OverviewRow row{label_of(windows, windows[w]), {}};
-    auto& of_recording = values.emplace_back();
-    for (Tally& tally : tallies[w]) {
-      row.cells.push_back(finished(tally));
-      std::ranges::sort(tally.values);
-      of_recording.push_back(std::move(tally.values));
-    }
+    for (const Tally& tally : tallies[w]) row.cells.push_back(finished(tally));
     mark_best(row);
-    overview.rows.push_back(std::move(row));
+    rows.push_back(std::move(row));
   }
-  overview.means = aggregate::ratio_means(values);
-  return overview;
+  return rows;
 }
 
 }  // namespace fusebench::findings

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "eval/aggregate/ratio_means.hpp"
 #include "eval/findings/ranking.hpp"
+#include "eval/registry/replicated_numbers.hpp"
 
 namespace fusebench::findings {
 
 /// The runs of a configuration on a recording: repetitions and replicates.
 struct OverviewCell {
-  std::size_t runs = 0;  ///< 0: it was not run there
+  std::vector<std::size_t> members;  ///< indices of its runs; none: it was not run there
   std::size_t ok = 0;
   /// SI. median: the number by which it is ranked; range: over all runs that are ok.
   std::optional<registry::MedianRange> value = {};
@@ -29,12 +29,7 @@ struct OverviewRow {
   std::vector<OverviewCell> cells;  ///< one a configuration of the ranking, in its order
 };
 
-struct Overview {
-  std::vector<OverviewRow> rows;
-  std::vector<aggregate::RatioMean> means;  ///< one a configuration
-};
-
 /// table: from which the ranking was made.
-[[nodiscard]] Overview overview_of(const Ranking& ranking, const tables::ResultTable& table);
+[[nodiscard]] std::vector<OverviewRow> overview_of(const Ranking& ranking, const tables::ResultTable& table);
 
 }  // namespace fusebench::findings

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -27,7 +26,7 @@ using Sums = std::map<Recording, std::pair<double, std::size_t>>;
 struct Candidate {
   RankedConfiguration configuration;
   Sums sums;
-  std::map<Recording, std::vector<double>> replicates;  ///< natural logarithms, in their order
+  std::map<Recording, std::vector<double>> values;  ///< of its runs: repetitions and replicates
 };
 
 double mean_of(const Sums& sums, const Recording& recording) {
@@ -133,67 +132,43 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
     auto& [sum, count] = at->sums[recording];
     sum += *value;
     ++count;
+    std::vector<double>& values = at->values[recording];
+    const std::size_t before = values.size();
     for (const registry::RunNumbers& replicate : row.replicates) {
-      if (const auto number = replicate[metric]; number && *number > 0)
-        at->replicates[recording].push_back(std::log(*number));
+      if (const auto number = replicate[metric]; number && *number > 0) values.push_back(*number);
     }
+    if (values.size() == before) values.push_back(*value);
   }
   return candidates;
 }
 
-/// Over the recordings that both have; nothing if there are none.
-std::optional<aggregate::MeanRatio> ratio_of(const Candidate& candidate, const Candidate& best) {
-  std::vector<double> logarithms;
-  for (const auto& [recording, sums] : candidate.sums) {
-    if (best.sums.contains(recording))
-      logarithms.push_back(std::log(mean_of(candidate.sums, recording) / mean_of(best.sums, recording)));
-  }
-  if (logarithms.empty()) return std::nullopt;
-  return aggregate::mean_ratio(logarithms);
-}
-
-/// The range of the geometric mean over recordings, from replicate to replicate; nothing if a recording has
-/// fewer than two.
-std::optional<registry::MedianRange> spread_of(const Candidate& candidate,
-                                               const std::set<Recording>& recordings) {
-  std::size_t count = std::numeric_limits<std::size_t>::max();
+/// The mean ratios of all, from the same resamples.
+void add_means(std::vector<Candidate>& candidates, const std::set<Recording>& recordings) {
+  aggregate::ReplicatedValues values;
   for (const Recording& recording : recordings) {
-    const auto found = candidate.replicates.find(recording);
-    count = std::min(count, found == candidate.replicates.end() ? 0 : found->second.size());
+    auto& of_recording = values.emplace_back();
+    for (Candidate& candidate : candidates) {
+      std::ranges::sort(candidate.values[recording]);
+      of_recording.push_back(candidate.values[recording]);
+    }
   }
-  if (recordings.empty() || count < 2) return std::nullopt;
-  std::vector<double> means;
-  for (std::size_t k = 0; k < count; ++k) {
-    double sum = 0;
-    for (const Recording& recording : recordings) sum += candidate.replicates.at(recording)[k];
-    means.push_back(std::exp(sum / static_cast<double>(recordings.size())));
-  }
-  return registry::median_range(std::move(means));
+  const std::vector<aggregate::RatioMean> means = aggregate::ratio_means(values);
+  for (std::size_t i = 0; i < means.size(); ++i) candidates[i].configuration.mean = means[i];
 }
 
 void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordings) {
+  add_means(candidates, recordings);
   for (Candidate& candidate : candidates) {
     candidate.configuration.recordings = candidate.sums.size();
     if (candidate.sums.size() < recordings.size() || recordings.empty()) continue;
-    std::vector<double> logarithms;
-    for (const Recording& recording : recordings)
-      logarithms.push_back(std::log(mean_of(candidate.sums, recording)));
-    candidate.configuration.value = aggregate::mean_ratio(logarithms).ratio;
-    candidate.configuration.spread = spread_of(candidate, recordings);
+    double sum = 0;
+    for (const Recording& recording : recordings) sum += std::log(mean_of(candidate.sums, recording));
+    candidate.configuration.value = std::exp(sum / static_cast<double>(recordings.size()));
   }
-  const auto by_value = [](const Candidate& c) {
-    const RankedConfiguration& k = c.configuration;
-    return std::tuple(!k.value.has_value(), k.value ? *k.value : -static_cast<double>(k.recordings));
-  };
-  std::ranges::stable_sort(candidates, {}, by_value);
-  const Candidate& best = candidates.front();
-  for (Candidate& candidate : std::span(candidates).subspan(1))
-    candidate.configuration.to_best = ratio_of(candidate, best);
-  const auto by_ratio = [](const Candidate& c) {
-    const RankedConfiguration& k = c.configuration;
-    return std::tuple(!k.value.has_value(), !k.to_best, k.to_best ? k.to_best->ratio : 0.0);
-  };
-  std::ranges::stable_sort(candidates.begin() + 1, candidates.end(), {}, by_ratio);
+  std::ranges::stable_sort(candidates, {}, [](const Candidate& candidate) {
+    const RankedConfiguration& k = candidate.configuration;
+    return std::tuple(-static_cast<double>(k.recordings), !k.mean.tied, k.mean.ratio.value_or(0));
+  });
 }
 
 }  // namespace

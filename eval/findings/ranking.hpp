@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "eval/aggregate/mean_ratio.hpp"
-#include "eval/registry/replicated_numbers.hpp"
+#include "eval/aggregate/ratio_means.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/tables/table.hpp"
 
@@ -23,17 +23,9 @@ struct RankedConfiguration {
   std::vector<std::size_t> rows = {};  ///< of the table: its repetitions on all recordings
   std::size_t runs = 0;
   std::size_t ok = 0;
-  std::size_t recordings = 0;  ///< of those that it has a number of
-  /// Of `value`, from replicate to replicate; nothing where a recording has fewer than two.
-  std::optional<registry::MedianRange> spread = {};
+  std::size_t recordings = 0;   ///< of those that it has a number of
   std::optional<double> value;  ///< SI, geometric mean; absent where it lacks a number that others have
-  /// Its number by that of the best, over the recordings that both have numbers of. Nothing of the best one.
-  std::optional<aggregate::MeanRatio> to_best;
-
-  /// Whether chance explains the difference: the spreads overlap.
-  [[nodiscard]] bool ties_with(const RankedConfiguration& other) const {
-    return spread && other.spread && spread->overlaps(*other.spread);
-  }
+  aggregate::RatioMean mean;    ///< to the smallest number of each recording
 };
 
 /// Over data of one kind, which alone can be compared.
@@ -43,7 +35,7 @@ struct Ranking {
   std::string frames;
   const registry::RunMetric* metric = nullptr;
   std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number
-  /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
+  /// Those with all numbers first; of these, those that tie with the best; then by the mean ratio.
   std::vector<RankedConfiguration> configurations;
 
   /// `data` in a sentence: "real", "simulated".

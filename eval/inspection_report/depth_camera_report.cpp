@@ -33,7 +33,8 @@ Json camera_json(const calibration::DepthCamera& camera) {
 Json registration_json(const RegistrationFit& fit) {
   return {{"edge_pixels", fit.edges},
           {"moved_px", fit.moved_px},
-          {"spread_px", fit.spread_px},
+          {"sigma_px", fit.sigma_px},
+          {"delay_frames", fit.delay_frames},
           {"better_share", fit.better_share},
           {"strength_as_read", fit.strength_as_read},
           {"strength_moved", fit.strength_moved}};
@@ -44,20 +45,21 @@ Result<RegistrationFit> estimate_depth_camera(const recording::Recording& record
   return fail(
       ErrorCode::run_failed,
       fmt::format("recording '{}' has too few edges of depth to estimate a depth camera", recording.name),
-      "record things that stand apart from what is behind them, near and far, all over the image");
+      "record objects in front of a more distant background, near and far, in all parts of the image");
 }
 
 Result<void> check_determined(const RegistrationFit& fit, const recording::Recording& recording) {
-  if (fit.is_one_camera() && fit.is_better_all_over()) return {};
+  if (fit.is_significant() && fit.is_better_all_over()) return {};
   const std::string reason =
-      !fit.is_one_camera()
+      !fit.is_significant()
           ? fmt::format(
-                "edges move {:.1f} px, and by {:.1f} px between the fits to every other frame (allowed: "
-                "up to {:g} of the movement)",
-                fit.moved_px, fit.spread_px, RegistrationFit::kMaxSpread)
+                "edges move {:.1f} +- {:.1f} px (allowed: {:g} standard deviations or more, with {:g} px "
+                "that "
+                "the scatter of frames does not show)",
+                fit.moved_px, fit.sigma_px, RegistrationFit::kSignificant, RegistrationFit::kCommonSigma_px)
           : fmt::format(
-                "edges move {:.1f} px and lie better in {:.0f} % of the frames only (allowed: {:.0f} % "
-                "or more)",
+                "edges move {:.1f} px and fit better in only {:.0f} % of the frames (required: {:.0f} % or "
+                "more)",
                 fit.moved_px, 100 * fit.better_share, 100 * RegistrationFit::kMinBetterShare);
   return fail(
       ErrorCode::run_failed,
@@ -73,7 +75,7 @@ calibration::RigCalibration rig_with_depth_camera(const recording::Recording& re
   rig.depth = fit.fitted;
   rig.source = fmt::format(
       "depth camera by fusebench calibrate on {} edges of {} (uncertain by {:.1f} px); the rest: {}",
-      fit.edges, recording.name, fit.spread_px, rig.source.empty() ? "no source given" : rig.source);
+      fit.edges, recording.name, fit.sigma_px, rig.source.empty() ? "no source given" : rig.source);
   return rig;
 }
 
@@ -85,11 +87,14 @@ std::string depth_camera_text(const RegistrationFit& fit, const recording::Recor
       "depth camera of {} by {} edges of depth\n"
       "  as read        {}\n"
       "  fitted         {}\n"
-      "  edges move     {:.1f} px (rms), and by {:.1f} px between the fits to every other frame\n"
+      "  uncertainty    {:.1f} px, centre ({:.1f}, {:.1f}) px, ({:.1f}, {:.1f}) mm\n"
+      "  edges move     {:.1f} +- {:.1f} px (rms)\n"
       "  better         {:.0f} % of the frames; strength of colour's edges there {:.3f} -> {:.3f}\n"
       "  verdict        {}\n",
-      recording.name, fit.edges, camera_text(fit.as_read), camera_text(fit.fitted), fit.moved_px,
-      fit.spread_px, 100 * fit.better_share, fit.strength_as_read, fit.strength_moved, verdict);
+      recording.name, fit.edges, camera_text(fit.as_read), camera_text(fit.fitted),
+      fit.fitted_sigma.focal_length_px, fit.fitted_sigma.centre_px.x(), fit.fitted_sigma.centre_px.y(),
+      1e3 * fit.fitted_sigma.place_m.x(), 1e3 * fit.fitted_sigma.place_m.y(), fit.moved_px, fit.sigma_px,
+      100 * fit.better_share, fit.strength_as_read, fit.strength_moved, verdict);
 }
 
 std::string depth_camera_json(const RegistrationFit& fit, const recording::Recording& recording) {

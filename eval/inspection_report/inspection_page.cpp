@@ -234,12 +234,12 @@ std::string to_page(const inspection::Inspection& inspection, const recording::R
   page.sections.push_back({"Frames", "Colour and depth (near is red, far is blue, black has no measurement).",
                            inspection_thumbnails(inspection, recording)});
   if (inspection.registration) {
-    page.sections.push_back({"Depth on colour",
-                             fmt::format("Borders of what is nearer, white as depth was read, red moved by "
-                                         "{:.1f} px (rms) by the depth camera that "
-                                         "fits best. White should lie on edges of the image.",
-                                         inspection.registration->moved_px),
-                             registration_pictures(inspection, recording)});
+    page.sections.push_back(
+        {"Depth on colour",
+         fmt::format("Borders of near objects in depth: white as read, red moved by {:.1f} px (rms) to the "
+                     "best fit of the depth camera. White should coincide with edges of the image.",
+                     inspection.registration->moved_px),
+         registration_pictures(inspection, recording)});
   }
   page.sections.push_back({"Measurements", "", measurement_table(inspection)});
   return page::to_html(page);

@@ -60,7 +60,7 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
     const inspection::measures::RegistrationFit& fit = *i.registration;
     depth.add("depth-colour misregistration",
               fmt::format("{:.1f} px +- {:.1f}; edges fit better there in {:.0f} % of frames", fit.moved_px,
-                          fit.spread_px, 100 * fit.better_share));
+                          fit.sigma_px, 100 * fit.better_share));
   }
   depth.append_to(all);
 }

@@ -28,12 +28,11 @@ MeshShape shape_of(const PreciseMesh& mesh) {
 Result<void> check_units(const MeshShape& reconstruction, const MeshShape& truth) {
   const double ratio = reconstruction.extent_m.norm() / truth.extent_m.norm();
   if (ratio < kOtherUnit && ratio > 1 / kOtherUnit) return {};
-  return fail(
-      ErrorCode::data_corrupt,
-      fmt::format("the reconstruction measures {:.4g} m from corner to corner of its box and the truth "
-                  "{:.4g} m: one of them seems not to be in metres",
-                  reconstruction.extent_m.norm(), truth.extent_m.norm()),
-      "`--scale 0.001` takes a reconstruction in millimetres; `--scale 1` says that metres it is");
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("the bounding box of the reconstruction has a diagonal of {:.4g} m, that of the "
+                          "ground truth {:.4g} m: one of them is probably not in metres",
+                          reconstruction.extent_m.norm(), truth.extent_m.norm()),
+              "`--scale 0.001` reads a reconstruction in millimetres, `--scale 1` in metres");
 }
 
 /// Evenly spread ones: a registration is not worth more.
@@ -51,12 +50,11 @@ Result<void> check_registered(const RegistrationResult& icp, const MeshErrorOpti
   if (!(icp.kept_rms_m > most_m)) return {};
   return fail(
       ErrorCode::data_corrupt,
-      fmt::format(
-          "icp ended with the reconstruction {:.4g} m (rms) from the truth, beyond the largest of the "
-          "thresholds, {:g} m: it seems to have stuck in a wrong place",
-          icp.kept_rms_m, most_m),
-      fmt::format("it only finds a place near where it starts{}; if the reconstruction is that bad, a larger "
-                  "last threshold says so (--thresholds)",
+      fmt::format("after icp the reconstruction is {:.4g} m (rms) from the ground truth, more than the "
+                  "largest threshold, {:g} m: icp probably ended in a wrong minimum",
+                  icp.kept_rms_m, most_m),
+      fmt::format("icp converges to a minimum near its start{}; for a reconstruction with errors of this "
+                  "size, pass a larger last threshold (--thresholds)",
                   started ? ""
                           : ": let it start from the poses, --trajectories TRUTH ESTIMATE (truth.tum and "
                             "trajectory.tum of a run), or from --transform FILE"));
@@ -86,11 +84,10 @@ std::string doubt_of(const RegistrationResult& icp, std::span<const Vector3d> po
   const std::string moved =
       fmt::format("moved the reconstruction by {:.0f} % of its radius (turned by {:.1f} deg)", 100 * share,
                   degrees(so3_log(icp.T_surface_points.rotation).norm()));
-  const std::string left = fmt::format("left it {:.4g} m (rms) from the truth", icp.kept_rms_m);
+  const std::string left = fmt::format("left it {:.4g} m (rms) from the ground truth", icp.kept_rms_m);
   return fmt::format(
-      "icp had no start, {}: it may have ended in a wrong place, which these numbers do not tell from a bad "
-      "reconstruction; start it from the poses, --trajectories TRUTH ESTIMATE (truth.tum and trajectory.tum "
-      "of a run), or from --transform FILE",
+      "icp had no start, {}: a wrong minimum cannot be distinguished from a bad reconstruction; give a start "
+      "with --trajectories TRUTH ESTIMATE (truth.tum and trajectory.tum of a run) or --transform FILE",
       far && loose ? moved + " and " + left
       : far        ? moved
                    : left);
@@ -100,11 +97,12 @@ Result<void> check_observed(const MeshComparison& comparison, double least) {
   const double share =
       static_cast<double>(comparison.truth_observed()) / static_cast<double>(comparison.truth_samples());
   if (share >= least) return {};
-  return fail(ErrorCode::data_corrupt,
-              fmt::format("only {:.1f} % of the true surface is observed (at least {:.0f} % are asked for)",
-                          100 * share, 100 * least),
-              "are the truth and the recording's poses in one world? For a recording of a part of the scene, "
-              "--min-observed 0.05 (or less) lowers the limit");
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("only {:.1f} % of the ground-truth surface is observed (required: {:.0f} % or more)",
+                  100 * share, 100 * least),
+      "are the ground-truth mesh and the recording's poses in one frame? For a recording of a part of the "
+      "scene, --min-observed 0.05 (or less) lowers the limit");
 }
 
 SurfregScore surfreg_of(const PreciseMesh& reconstruction, const PreciseMesh& truth,

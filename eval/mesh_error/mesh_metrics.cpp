@@ -84,8 +84,9 @@ Result<MeshComparison> MeshComparison::create(const PreciseMesh& reconstruction,
     comparison.observed_points_ = comparison.truth_points_;
   }
   if (comparison.observed_points_.empty()) {
-    return fail(ErrorCode::data_corrupt, "no sample of the true surface is seen from the true poses",
-                "are the mesh and the trajectory in one world, and in metres?");
+    return fail(ErrorCode::data_corrupt,
+                "no sample of the ground-truth surface is visible from the ground-truth poses",
+                "are the mesh and the trajectory in one frame and in metres?");
   }
   return comparison;
 }

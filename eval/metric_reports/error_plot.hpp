@@ -19,7 +19,7 @@ struct ErrorPlot {
   const evo_results::EvoResult& result;
   const Trajectory& reference;  ///< drawn behind the errors
   const Trajectory& estimate;   ///< as compared
-  std::vector<std::size_t> at;  ///< pose of each error; empty where the protocol does not say
+  std::vector<std::size_t> at;  ///< pose of each error; empty if the protocol has none
   PlotMode mode;
   PlotAbscissa abscissa = PlotAbscissa::seconds;
   std::optional<double> colour_min;             ///< error of the first colour; default: the least

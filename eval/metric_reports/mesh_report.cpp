@@ -34,19 +34,18 @@ std::string shape_text(const std::string& file, const mesh_error::MeshShape& sha
 
 std::string alignment_text(const mesh_error::MeshEvaluation& e, const mesh_error::MeshRequest& request) {
   const trajectory_error::Alignment& alignment = e.errors.alignment;
-  if (alignment.mode == "none") return "none: both are taken to be in one world";
+  if (alignment.mode == "none") return "none: both are assumed to be in one frame";
   const SE3& T = alignment.T_reference_estimate;
-  std::string text = fmt::format("{}: turned by {:.4f} deg, moved by ({:.4f}, {:.4f}, {:.4f}) m",
+  std::string text = fmt::format("{}: rotated by {:.4f} deg, translated by ({:.4f}, {:.4f}, {:.4f}) m",
                                  alignment.mode, degrees(so3_log(T.rotation).norm()), T.translation.x(),
                                  T.translation.y(), T.translation.z());
   if (!e.icp) return text;
-  text += fmt::format(" ({} steps{} from {}, the nearest {:.0f} % of points counted, {:.4g} m rms)",
+  text += fmt::format(" ({} steps{} from {}, the nearest {:.0f} % of points used, {:.4g} m rms)",
                       e.icp->steps, e.icp->converged ? "" : ", not converged,",
-                      request.start.mode == "none" ? "where it was" : "the " + request.start.mode,
+                      request.start.mode == "none" ? "its own pose" : "the " + request.start.mode,
                       100 * request.icp->kept, e.icp->kept_rms_m);
   if (e.icp->free_directions > 0)
-    text +=
-        fmt::format("; {} of 6 directions are not determined and were left alone", e.icp->free_directions);
+    text += fmt::format("; {} of 6 directions are not observable and stay unchanged", e.icp->free_directions);
   return text;
 }
 
@@ -61,8 +60,8 @@ double observed_share(const mesh_error::MeshEvaluation& e) {
 
 std::string culling_text(const mesh_error::MeshEvaluation& e, const mesh_error::MeshRequest& request,
                          const ComparedMeshes& files) {
-  if (!request.views) return "none: all of the truth counts";
-  return fmt::format("{} of {} views of {}, {:.3g} to {:.3g} m: {:.1f} % of the truth is observed",
+  if (!request.views) return "none: the whole ground truth counts";
+  return fmt::format("{} of {} views of {}, {:.3g} to {:.3g} m: {:.1f} % of the ground truth is observed",
                      mesh_error::to_string(request.views->culling), request.views->T_truth_camera.size(),
                      files.recording, request.views->min_depth_m, request.views->max_depth_m,
                      100 * observed_share(e));
@@ -72,7 +71,7 @@ std::string culling_text(const mesh_error::MeshEvaluation& e, const mesh_error::
 std::string statistics_text(const mesh_error::MeshEvaluation& e) {
   std::vector<std::pair<std::string, const mesh_error::MeshDistances*>> columns = {
       {"accuracy [m]", &e.errors.accuracy}, {"completeness [m]", &e.errors.completeness}};
-  if (e.not_culled) columns.emplace_back("of all truth [m]", &e.not_culled->completeness);
+  if (e.not_culled) columns.emplace_back("of the whole ground truth [m]", &e.not_culled->completeness);
   Lines lines = {{""}};
   for (const auto& [title, distances] : columns) lines[0].push_back(title);
   const auto add = [&](const char* name, auto&& value) {
@@ -95,7 +94,7 @@ std::string statistics_text(const mesh_error::MeshEvaluation& e) {
 
 std::string thresholds_text(const mesh_error::MeshEvaluation& e) {
   Lines lines = {{"closer than [m]", "precision [%]", "recall [%]", "F [%]"}};
-  if (e.not_culled) lines[0].emplace_back("recall of all truth [%]");
+  if (e.not_culled) lines[0].emplace_back("recall of the whole ground truth [%]");
   for (std::size_t i = 0; i < e.errors.thresholds.size(); ++i) {
     const mesh_error::MeshThreshold& at = e.errors.thresholds[i];
     lines.push_back({text::seven_digits(at.tau_m), fmt::format("{:.2f}", 100 * at.precision),
@@ -165,7 +164,7 @@ std::string to_text(const mesh_error::MeshEvaluation& evaluation, const mesh_err
                    {"SurfReg", surfreg_text(evaluation.surfreg)}};
   if (evaluation.errors.ghost_share)
     summary.push_back(
-        {"ghosts", fmt::format("{:.2f} % stand more than {:g} cm before the truth, in free space",
+        {"ghosts", fmt::format("{:.2f} % are more than {:g} cm in front of the ground truth, in free space",
                                100 * *evaluation.errors.ghost_share, 100 * mesh_error::kGhostDistance_m)});
   return text + text::aligned_columns(summary);
 }

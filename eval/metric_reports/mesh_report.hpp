@@ -12,7 +12,7 @@ struct ComparedMeshes {
   std::string reconstruction;
   std::string truth;
   double scale = 1;       ///< of the reconstruction's numbers, to metres
-  std::string recording;  ///< whose views culled the truth; empty: none did
+  std::string recording;  ///< of the views that culled the ground truth; empty: not culled
 };
 
 /// Both meshes, alignment, samples and culling, then statistics of both directions, the scores at the

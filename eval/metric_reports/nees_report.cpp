@@ -47,8 +47,8 @@ std::vector<std::vector<std::string>> heading(const trajectory_error::PoseConsis
                                   question.association.max_difference_s)},
       {"pairs", fmt::format("{} of {} possible (coverage {:.1f} %), {} without NEES (singular covariance)",
                             c.pairs, c.possible, 100 * coverage_of(c), c.singular)},
-      {"alignment", fmt::format("{}: turned by {:.4f} deg, moved by {:.4f} m; the truth is moved by its "
-                                "inverse, into the world of the covariances",
+      {"alignment", fmt::format("{}: rotated by {:.4f} deg, translated by {:.4f} m; the ground truth is "
+                                "transformed by its inverse into the frame of the covariances",
                                 trajectory_error::to_string(question.alignment.mode),
                                 degrees(so3_log(rigid.rotation).norm()), rigid.translation.norm())}};
 }

@@ -9,7 +9,7 @@
 
 namespace fusebench::metric_reports {
 
-/// Which question was asked; the reference was interpolated.
+/// The request; the reference is interpolated.
 struct ConsistencyQuestion {
   ComparedFiles files;
   trajectory_files::AssociationOptions association;

@@ -14,7 +14,7 @@ namespace fusebench::metric_reports {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 4000;  // of a curve: more cannot be told apart, and files grow
+constexpr std::size_t kMostPoints = 4000;  // of a curve: more are not distinguishable, and files grow
 
 /// 1, 2 or 5 times a power of ten: about so many ticks over a length.
 double tick_step(double length, double ticks) {

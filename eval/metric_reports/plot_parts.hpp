@@ -56,7 +56,7 @@ inline constexpr std::string_view kNextPanel =
     "unset title\nset size noratio\nset autoscale\nset xtics autofreq\nset ytics autofreq\n";
 inline constexpr std::string_view kReferenceStyle = "lw 1.5 dt (8,5) lc rgb '#555555'";
 
-/// Every so many of the indices below size, the last among them: more points cannot be told apart.
+/// Evenly spaced indices below size, including the last: more points are not distinguishable.
 [[nodiscard]] std::vector<std::size_t> strided(std::size_t size);
 
 /// Data: the points of a curve over time, thinned so that peaks stay.

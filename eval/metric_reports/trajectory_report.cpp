@@ -50,6 +50,9 @@ std::string association_text(const trajectory_error::TrajectoryEvaluation& e) {
     case trajectory_files::AssociationRule::index:
       how = "by the number of the pose";
       break;
+    case trajectory_files::AssociationRule::number:
+      how = "by the number of the frame";
+      break;
     case trajectory_files::AssociationRule::interpolated:
       how = fmt::format("reference interpolated in gaps of at most {:.6g} s", a.max_difference_s);
       break;
@@ -109,6 +112,10 @@ Lines heading(const trajectory_error::TrajectoryEvaluation& e, const ComparedFil
       {pairs_of_tum(e.request) ? "compared" : "pairs",
        fmt::format("{} of {} possible (coverage {:.1f} %)", e.pairs, e.possible, 100 * e.coverage)},
       {"alignment", alignment_text(e)}};
+  if (e.time_coverage)
+    lines.insert(lines.end() - 1,
+                 {"time", fmt::format("{:.1f} % of the reference's is covered by the estimate",
+                                      100 * *e.time_coverage)});
   if (e.fitted_offset) lines.push_back({"fitted offset", offset_text(*e.fitted_offset)});
   if (relative) lines.push_back({"motions", motions_text(e)});
   if (e.request.plane != trajectory_error::Plane::none)
@@ -236,6 +243,7 @@ std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, co
                {"pairs", evaluation.pairs},
                {"possible", evaluation.possible},
                {"coverage", evaluation.coverage}};
+  if (evaluation.time_coverage) json["time_coverage"] = *evaluation.time_coverage;
   json["association"] = {{"rule", trajectory_files::to_string(request.association.rule)},
                          {"max_difference_s", request.association.max_difference_s},
                          {"offset_s", request.association.offset_s}};

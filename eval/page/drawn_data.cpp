@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/io/text_table.hpp"
-#include "eval/text/base64.hpp"
+#include "eval/text/markup_text.hpp"
 
 namespace fusebench::page {
 

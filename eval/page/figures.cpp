@@ -210,6 +210,14 @@ std::string slug(std::string_view text) {
   return result;
 }
 
+/// A name that file systems take with its extension; the digits tell long names apart that begin alike.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t kLongest = 200;  // of 255 bytes
+  constexpr std::size_t kKept = 180;
+  if (name.size() <= kLongest) return name;
+  return fmt::format("{}-{:016x}", name.substr(0, kKept), io::content_hash(name).xxh3);
+}
+
 Result<void> run_gnuplot(const std::filesystem::path& script) {
   // Within the folder, so that the script draws there again for whoever edits it.
   auto child = process::ChildProcess::start(
@@ -325,17 +333,7 @@ std::string panels_script(const std::vector<Panel>& panels, std::size_t columns,
   return script + "unset multiplot\n";
 }
 
-namespace {
-
-/// A name that file systems take with its extension; the digits tell long names apart that begin alike.
-std::string shortened(const std::string& name) {
-  constexpr std::size_t kLongest = 200;  // of 255 bytes
-  constexpr std::size_t kKept = 180;
-  if (name.size() <= kLongest) return name;
-  return fmt::format("{}-{:016x}", name.substr(0, kKept), io::content_hash(name).xxh3);
-}
-
-}  // namespace
+std::string file_name_of(std::string_view text) { return shortened(slug(text)); }
 
 Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
                                   FigureFormat format) {

@@ -40,6 +40,9 @@ struct Panel {
 /// gnuplot is not installed.
 [[nodiscard]] Result<void> draw_figure(const std::string& script, const std::filesystem::path& folder,
                                        const std::string& name, FigureFormat format);
+/// A name for files: letters and digits of the text in lower case, with one '_' for what is between them. Of
+/// a long one the beginning, and digits that tell it apart.
+[[nodiscard]] std::string file_name_of(std::string_view text);
 /// The name of the file of a figure.
 [[nodiscard]] std::string figure_file(const std::string& name, FigureFormat format);
 

@@ -62,6 +62,14 @@ std::string number_columns(const PageTable& table) {
   return classes;
 }
 
+/// The cell, whose first line leads to the file.
+std::string html_of_cell(const std::string& text, const std::string& file) {
+  if (file.empty()) return escaped(text);
+  const std::size_t line = std::min(text.find('\n'), text.size());
+  return fmt::format("<a href=\"{}\">{}</a>{}", escaped(file), escaped(text.substr(0, line)),
+                     escaped(text.substr(line)));
+}
+
 std::string html_of(const PageTable& table) {
   std::string classes = number_columns(table);
   if (table.sortable) classes += classes.empty() ? "sortable" : " sortable";
@@ -79,7 +87,8 @@ std::string html_of(const PageTable& table) {
     html += style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", style);
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const bool best = std::ranges::find(row.best, i) != row.best.end();
-      html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "", escaped(row.cells[i]));
+      html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "",
+                          html_of_cell(row.cells[i], i < row.links.size() ? row.links[i] : ""));
     }
     html += "</tr>\n";
   }
@@ -122,7 +131,12 @@ std::string html_of(const std::vector<PageImage>& images, const PageSection& sec
 }
 
 std::string html_of(const PageScene& scene, std::size_t part, Json& all) {
-  std::string html = fmt::format("<div class=\"scene\" id=\"scene-{}\"></div>\n", all.size());
+  std::string html = fmt::format("<div class=\"scene\" id=\"scene-{}\"><div class=\"stills\">\n", all.size());
+  for (const SceneMesh& mesh : scene.meshes) {
+    html += fmt::format("<figure><img alt=\"model: {0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+                        escaped(mesh.label), mesh.picture_uri);
+  }
+  html += "</div></div>\n";
   if (!scene.caption.empty()) html += fmt::format("<p>{}</p>\n", escaped(scene.caption));
   all.push_back(json_of(scene, part));
   return html;

@@ -22,6 +22,9 @@ struct PageTable {
     std::string style;                   ///< "error", "warning", "note" or empty
     std::vector<std::size_t> best = {};  ///< places of the cells that are the best of their kind
     bool fixed = false;                  ///< stays at its place when the table is sorted: a mean, a sum
+    /// Files beside the page that the first lines of cells lead to, one a cell, with letters, digits and -_.
+    /// alone; empty, and of the cells beyond them: none.
+    std::vector<std::string> links = {};
   };
   std::vector<std::string> header;
   std::vector<Row> rows;
@@ -99,6 +102,7 @@ struct SceneMesh {
   std::string label;
   PreciseMesh mesh;               ///< with colors
   std::vector<Rgb> error_colors;  ///< one a vertex, or none
+  std::string picture_uri = {};   ///< in place of the mesh: on paper, and where there is no WebGL
 };
 
 /// A pose of a camera whose z points ahead and whose y points down.

@@ -305,8 +305,8 @@ function unfoldForPaper(paper) {
 }
 
 /// Of charts on paper, in pixels: such that texts are as large as those beside them. page.css has the same shapes.
-const paperSize = { view: [310, 310], chart: [410, 300] };
-const leastOnPaper = 120;  // height of what is drawn
+const paperSize = { view: [270, 210], chart: [300, 220] };
+const leastOnPaper = 100;  // height of what is drawn
 
 /// Paper is white, and its columns have other widths than a screen's. A view is fitted at once: paper does not wait.
 function drawForPaper(paper) {

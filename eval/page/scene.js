@@ -1,5 +1,5 @@
-// Draws the meshes of a page with three.js. One WebGL context serves all views: each view is a plain canvas that
-// the picture is copied to, so that a page may hold any number of them, and prints.
+// Draws the meshes of a page with three.js, in place of their pictures. One WebGL context serves all views: each view is a
+// plain canvas that the picture is copied to, so that a page may hold any number of them. Paper shows the pictures.
 "use strict";
 (function () {
   const scenes = JSON.parse(document.getElementById("scenes").textContent);
@@ -77,9 +77,11 @@
   try {
     renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   } catch (error) {
-    document.querySelectorAll(".scene").forEach((host) => element("p", host, "The meshes need WebGL, which this browser does not offer."));
+    document.querySelectorAll(".scene").forEach((host) => element("p", host, "These are pictures. Models that turn need WebGL, which this browser does not offer."));
     return;
   }
+
+  document.querySelectorAll(".scene").forEach((host) => host.classList.add("turning"));
 
   function viewOf(mesh, host) {
     const figure = element("div", host);
@@ -121,6 +123,7 @@
     const grid = element("div", host);
     grid.className = "views";
     const views = description.meshes.map((mesh) => viewOf(mesh, grid));
+    const pictures = host.querySelectorAll(".stills figure");
     if (views.length === 1) grid.classList.add("single");
     const camera = new THREE.PerspectiveCamera(45, 1, 0.01, 100);
     const shapeOf = (canvas) => Math.max(1, canvas.clientWidth) / Math.max(1, canvas.clientHeight);
@@ -136,7 +139,7 @@
       view.scene.add(view.path);
     });
 
-    // Out of sight, a picture is made only once it comes into view or is printed.
+    // Out of sight, a view is drawn only once it comes into sight.
     let stale = false;
     function render() {
       stale = !inSight.has(index);
@@ -251,7 +254,7 @@
     });
     window.addEventListener("run-shown", (event) => {
       if (event.detail.part !== description.part) return;
-      views.forEach((view) => { if (isOf(view.mesh.label, event.detail.run)) view.figure.hidden = !event.detail.visible; });
+      views.forEach((view, i) => { if (isOf(view.mesh.label, event.detail.run)) view.figure.hidden = pictures[i].hidden = !event.detail.visible; });
       renderSoon();
     });
     window.addEventListener("charts-drawn", () => {
@@ -262,7 +265,7 @@
     window.addEventListener("resize", render);
   }
 
-  // A scene is prepared when it comes into view, or is printed.
+  // A scene is prepared when it comes into view.
   function prepare(index) {
     if (unprepared.delete(index)) start(scenes[index], index);
     refreshers.get(index)();
@@ -277,6 +280,4 @@
     prepare(index);
   }), { rootMargin: "300px" });
   scenes.forEach((_, index) => observer.observe(document.getElementById("scene-" + index)));
-  // After page.js, which draws in the colours of paper.
-  window.addEventListener("beforeprint", () => scenes.forEach((_, index) => prepare(index)));
 })();

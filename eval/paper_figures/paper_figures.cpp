@@ -8,10 +8,9 @@
 
 #include "core/mesh/ply_file.hpp"
 #include "datasets/images/image_files.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/page/image_source.hpp"
-#include "eval/paper_figures/model_view.hpp"
+#include "eval/report/model_view.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/run_charts/run_charts.hpp"
 #include "eval/run_charts/run_series.hpp"
@@ -161,39 +160,11 @@ Result<void> add_patches(const Loaded& recording, const std::filesystem::path& f
 
 constexpr int kViewWidth_px = 400;
 constexpr int kViewHeight_px = 320;
+constexpr double kStray = 0.02;  // share of the first model that is not in view, at each side
 
 /// Of the view, in the frame of the first camera of a run (x right, y down, z forward): from behind and
 /// above, so that drift shows as what does not fit.
 SE3 T_first_view() { return {so3_exp({radians(-25.0), 0, 0}), {0, -1.5, -2.5}}; }
-
-/// Sees all that lies in the middle of the first run's model, but for some stray triangles.
-PinholeCamera view_camera(const PreciseMesh& mesh, const SE3& T_mesh_view) {
-  constexpr double kStray = 0.02;
-  constexpr double kFill = 0.94;
-  PinholeCamera camera;
-  camera.width_px = kViewWidth_px;
-  camera.height_px = kViewHeight_px;
-  const SE3 T_view_mesh = T_mesh_view.inverse();
-  std::vector<double> x, y;
-  for (const Vector3d& vertex : mesh.vertices) {
-    const Vector3d p = T_view_mesh * vertex;
-    if (p.z() <= 0) continue;
-    x.push_back(p.x() / p.z());
-    y.push_back(p.y() / p.z());
-  }
-  if (x.empty()) x = y = {-1, 1};
-  std::ranges::sort(x);
-  std::ranges::sort(y);
-  const auto range = [](const std::vector<double>& sorted) {
-    return Vector2d(mesh_error::percentile(sorted, kStray), mesh_error::percentile(sorted, 1 - kStray));
-  };
-  const Vector2d across = range(x), down = range(y);
-  camera.fx_px = camera.fy_px = kFill * std::min(kViewWidth_px / std::max(across[1] - across[0], 1e-3),
-                                                 kViewHeight_px / std::max(down[1] - down[0], 1e-3));
-  camera.cx_px = 0.5 * (kViewWidth_px - 1) - camera.fx_px * across.mean();
-  camera.cy_px = 0.5 * (kViewHeight_px - 1) - camera.fy_px * down.mean();
-  return camera;
-}
 
 /// The models of all methods, by one camera.
 Result<void> add_models(const Loaded& recording, const std::filesystem::path& folder,
@@ -209,8 +180,11 @@ Result<void> add_models(const Loaded& recording, const std::filesystem::path& fo
     }
     mesh = mesh_error::with_discs(*std::move(mesh));
     const SE3 T_world_view = run.T_first_world.inverse() * T_first_view();
-    if (!camera) camera = view_camera(*mesh, T_world_view);
-    const ColorImage image = model_view(mesh->cast<float>(), *camera, T_world_view);
+    if (!camera) {
+      camera = report::camera_around(report::seen_box(mesh->vertices, T_world_view, kStray), kViewWidth_px,
+                                     kViewHeight_px);
+    }
+    const ColorImage image = report::model_view(mesh->cast<float>(), *camera, T_world_view);
     const auto& ate = run.run->record.metrics.ate.value;
     const std::string error = ate ? fmt::format(": ATE {:.2f} cm", 100 * ate->stats.rmse) : "";
     if (auto added = figure.add(folder, run.label + error, image); !added) return added;

@@ -14,7 +14,7 @@
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/trajectory/association.hpp"
 #include "eval/pose_intensity/probes.hpp"
-#include "eval/record/true_camera.hpp"
+#include "eval/record/record_origin.hpp"
 
 namespace fusebench::pose_intensity {
 
@@ -51,8 +51,9 @@ class FrameLoader {
 
   Result<void> load_surface() {
     if (recording_.truth_mesh_file.empty() || recording_.ground_truth.empty())
-      return fail(ErrorCode::data_missing, "true depth needs a recording with a true mesh and true poses",
-                  "simulated recordings have both; without --true-depth the measured depth is used");
+      return fail(ErrorCode::data_missing,
+                  "--true-depth requires a recording with a ground-truth mesh and ground-truth poses",
+                  "simulated recordings have both; without this option the measured depth is used");
     const auto mesh = mesh::read_ply(recording_.truth_mesh_file);
     if (!mesh) return tl::unexpected(mesh.error());
     surface_.emplace(mesh->cast<float>());

@@ -17,6 +17,7 @@ std::string sensors_text(const SensorCheck& sensors) {
         fmt::format("gyroscope bias ({:.4f}, {:.4f}, {:.4f}) rad/s; {}\n", bias->x(), bias->y(), bias->z(),
                     bias->norm() < kLeastBias_radps ? "small enough for the filter to find"
                                                     : "a run takes it out of the samples");
+  if (sensors.depth_camera) text += to_line(*sensors.depth_camera) + "\n";
   if (sensors.findings.empty()) text += "nothing contradicts the calibration\n";
   for (const inspection::Finding& finding : sensors.findings)
     text += fmt::format("{}: {}{}\n", to_string(finding.severity), finding.message,

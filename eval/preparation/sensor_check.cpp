@@ -79,6 +79,8 @@ SensorCheck sensor_check_of(const Json& json) {
     result.gyroscope_bias_radps = Vector3d(bias->at(0), bias->at(1), bias->at(2));
   if (const auto offset = json.find("imu_time_offset_s"); offset != json.end())
     result.imu_time_offset_s = offset->get<double>();
+  if (const auto camera = json.find("depth_camera"); camera != json.end())
+    result.depth_camera = depth_camera_of(*camera);
   return result;
 }
 
@@ -110,6 +112,7 @@ nlohmann::ordered_json json_of(const SensorCheck& result) {
   if (const auto& bias = result.gyroscope_bias_radps)
     json["gyroscope_bias_radps"] = {bias->x(), bias->y(), bias->z()};
   if (result.imu_time_offset_s) json["imu_time_offset_s"] = *result.imu_time_offset_s;
+  if (result.depth_camera) json["depth_camera"] = json_of(*result.depth_camera);
   return json;
 }
 
@@ -119,6 +122,9 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
   const bool with_imu = has_recorded_imu(recording);
   std::ranges::copy_if(inspected.findings, std::back_inserter(result.findings),
                        [&](const Finding& finding) { return is_of_sensors(finding, with_imu); });
+  if (inspected.registration) result.depth_camera = measured_depth_camera(*inspected.registration);
+  if (result.depth_camera && result.depth_camera->is_used)
+    std::erase_if(result.findings, [](const Finding& f) { return f.code == "depth-misregistered"; });
   if (with_imu && inspected.imu && is_independent_of_truth(*inspected.imu))
     result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
   // Without ground truth the inspection has compared the IMU with the images already.
@@ -128,6 +134,8 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
       compared ? inspected.imu_alignment : inspection::align_imu_with_images(recording, workers);
   if (alignment && alignment->time_offset_sigma_s < kKnownOffset_s)
     result.imu_time_offset_s = alignment->time_offset_s;
+  if (std::abs(result.imu_time_offset_s.value_or(0)) >= kLeastTimeOffset_s)  // a run removes it
+    std::erase_if(result.findings, [](const Finding& f) { return f.code == "imu-time-offset"; });
   return result;
 }
 

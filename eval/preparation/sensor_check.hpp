@@ -11,6 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "datasets/inspection/finding.hpp"
 #include "datasets/recording/recording.hpp"
+#include "eval/preparation/depth_camera.hpp"
 
 namespace fusebench::preparation {
 
@@ -24,6 +25,9 @@ struct SensorCheck {
   /// IMU's stamp minus camera's stamp of one instant, by the turns of the camera in the images; nothing where
   /// these do not make it observable. A synthetic IMU has the error of the ground truth's clock.
   std::optional<double> imu_time_offset_s;
+  /// By the edges of depth and colour; nothing where depth has too few edges. If it is used, the findings do
+  /// not have depth-misregistered.
+  std::optional<MeasuredDepthCamera> depth_camera;
 };
 
 [[nodiscard]] SensorCheck inspected_sensors(const recording::Recording& recording, const Workers& workers);

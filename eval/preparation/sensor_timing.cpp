@@ -109,33 +109,6 @@ Round measure_at(const std::vector<FramePair>& pairs, const PinholeCamera& camer
   return round;
 }
 
-/// How much of a change a round finds: bilinear intensities and robust weights are no linear function of a
-/// displacement of several pixels. Known from the steps of two rounds.
-class Response {
- public:
-  /// A round at timing_s found that it must change by a step; returns the whole change.
-  Vector3d completed(const Vector3d& timing_s, const Vector3d& step_s) {
-    constexpr double kLeast = 0.3;
-    if (known_) {
-      for (int i = 0; i < 3; ++i) {
-        const double change_s = timing_s[i] - timing_s_[i];
-        if (std::abs(change_s) > kConverged_s)
-          share_[i] = std::clamp((step_s_[i] - step_s[i]) / change_s, kLeast, 1.0);
-      }
-    }
-    known_ = true;
-    timing_s_ = timing_s;
-    step_s_ = step_s;
-    return step_s.cwiseQuotient(share_);
-  }
-
- private:
-  bool known_ = false;
-  Vector3d timing_s_ = Vector3d::Zero();
-  Vector3d step_s_ = Vector3d::Zero();
-  Vector3d share_ = Vector3d::Ones();
-};
-
 double rms_rate_radps(const std::vector<FramePair>& pairs) {
   double sum = 0;
   for (const FramePair& pair : pairs)
@@ -182,6 +155,17 @@ SensorTiming sensor_timing(const TimingEstimate& estimate) {
           estimate.sigma_s[0], estimate.sigma_s[1], estimate.sigma_s[2]};
 }
 
+void TimingResponse::take(const Vector3d& timing_s, const Vector3d& step_s, const Vector3d& least_change_s) {
+  for (int i = 0; i < 3 && known_; ++i) {
+    const double change_s = timing_s[i] - timing_s_[i];
+    if (std::abs(change_s) > least_change_s[i])
+      share_[i] = std::clamp((step_s_[i] - step_s[i]) / change_s, least_, 1.0);
+  }
+  known_ = true;
+  timing_s_ = timing_s;
+  step_s_ = step_s;
+}
+
 MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const SensorTiming& prior_timing,
                               double focal_length_px, const Workers& workers) {
   const TimingEstimate prior = timing_of(prior_timing);
@@ -190,14 +174,16 @@ MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const Senso
   if (pairs.size() < kFewestPairs) return nothing;
   const Vector3d common_s = common_sigma_s(pairs, focal_length_px);
   MeasuredTiming result = nothing;
-  Response response;
+  // Bilinear intensities and robust weights are no linear function of a displacement of several pixels.
+  TimingResponse response(0.3);
   for (int k = 0; k < kMostRounds; ++k) {
     const Vector3d before_s = result.posterior.value_s;
     const Round round = measure_at(pairs, windows.front().camera, before_s, prior.value_s[2], workers);
     if (round.pairs < kFewestPairs) return nothing;
     Matrix3d covariance = round.covariance;
     covariance.diagonal() += common_s.cwiseProduct(common_s);
-    const Vector3d measured_s = before_s + response.completed(before_s, round.step_s);
+    response.take(before_s, round.step_s, Vector3d::Constant(kConverged_s));
+    const Vector3d measured_s = before_s + round.step_s.cwiseQuotient(response.share());
     result = {combined(prior, measured_s, covariance), round.pairs};
     if (((result.posterior.value_s - before_s).array().abs() < kConverged_s).all()) break;
   }

@@ -20,6 +20,26 @@ struct TimingEstimate {
 [[nodiscard]] TimingEstimate timing_of(const SensorTiming& timing);
 [[nodiscard]] SensorTiming sensor_timing(const TimingEstimate& estimate);
 
+/// The share of a missing change of the timing that a round of an iteration finds, per constant; it is learnt
+/// from the steps of rounds that held different timings.
+class TimingResponse {
+ public:
+  /// least: the smallest share that is assumed.
+  explicit TimingResponse(double least) : least_(least) {}
+  /// A round that held timing_s found that it must change by a step. A constant that changed by at most
+  /// least_change_s since the round before keeps its share.
+  void take(const Vector3d& timing_s, const Vector3d& step_s, const Vector3d& least_change_s);
+  /// step / share: the whole change.
+  [[nodiscard]] const Vector3d& share() const { return share_; }
+
+ private:
+  double least_;
+  bool known_ = false;
+  Vector3d timing_s_ = Vector3d::Zero();
+  Vector3d step_s_ = Vector3d::Zero();
+  Vector3d share_ = Vector3d::Ones();
+};
+
 struct MeasuredTiming {
   TimingEstimate posterior;  ///< with the prior
   std::size_t pairs = 0;     ///< of frames; 0: nothing could be measured, and the posterior is the prior

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "core/base/upper_median.hpp"
 #include "datasets/inspection/measures/frame_warp.hpp"
 
 namespace fusebench::preparation {
@@ -113,9 +115,7 @@ void add_normal(const Residuals& residuals, double least_sigma, Normal& normal, 
   std::vector<double> sizes;
   sizes.reserve(residuals.values.size());
   for (const double value : residuals.values) sizes.push_back(std::abs(value));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  const double sigma = std::max(least_sigma, 1.4826 * *middle);
+  const double sigma = std::max(least_sigma, 1.4826 * upper_median(std::move(sizes)));
   for (std::size_t i = 0; i < residuals.values.size(); ++i) {
     const double whitened = std::abs(residuals.values[i]) / sigma;
     const double weight = (whitened <= kHuberSigmas ? 1.0 : kHuberSigmas / whitened) / (sigma * sigma);

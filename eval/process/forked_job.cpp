@@ -23,7 +23,6 @@
 
 #include "core/io/abandoned.hpp"
 #include "eval/process/child_setup.hpp"
-#include "eval/process/process_usage.hpp"
 
 namespace fusebench::process {
 

@@ -16,7 +16,6 @@
 
 #include "eval/process/child_setup.hpp"
 #include "eval/process/nameless_file.hpp"
-#include "eval/process/process_usage.hpp"
 
 namespace fusebench::process {
 

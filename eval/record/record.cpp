@@ -11,10 +11,8 @@
 #include <string_view>
 
 #include "core/io/bounded_text.hpp"
-#include "eval/record/histogram_json.hpp"
-#include "eval/record/record_camera.hpp"
-#include "eval/record/record_loops.hpp"
 #include "eval/record/record_metrics.hpp"
+#include "eval/record/record_parts.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::record {

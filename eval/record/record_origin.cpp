@@ -91,6 +91,10 @@ std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording)
   return stamps;
 }
 
+std::optional<SE3> true_camera(const recording::Recording& recording, std::int64_t instant_ns) {
+  return trajectory::interpolate_pose(recording.ground_truth, instant_ns, trajectory::kMaxTruthGap_ns);
+}
+
 Trajectory true_trajectory(const recording::Recording& recording, std::span<const StampAndInstant> stamps) {
   return true_trajectory(recording.ground_truth, stamps);
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -38,6 +39,9 @@ namespace fusebench::record {
 /// A stamp that outputs name a pose by, and the instant that it was taken at.
 using StampAndInstant = std::pair<std::int64_t, std::int64_t>;
 [[nodiscard]] std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording);
+
+/// T_truth_camera of the colour camera at an instant; nothing where the ground truth does not reach.
+[[nodiscard]] std::optional<SE3> true_camera(const recording::Recording& recording, std::int64_t instant_ns);
 
 /// The true colour camera at each instant at which it is known (in gaps of at most 0.1 s), by the stamps.
 [[nodiscard]] Trajectory true_trajectory(const recording::Recording& recording,

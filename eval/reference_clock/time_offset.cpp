@@ -7,7 +7,6 @@
 
 #include "eval/reference_clock/body_motions.hpp"
 #include "eval/reference_clock/offset_fit.hpp"
-#include "eval/reference_clock/offset_search.hpp"
 
 namespace fusebench::reference_clock {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "eval/page/image_source.hpp"
+#include "eval/report/narrowed_image.hpp"
 
 namespace fusebench::report {
 
@@ -29,14 +29,8 @@ struct Choice {
 };
 
 std::string source_of(const ColorImage& image, int width_px) {
-  const int width = std::min(width_px, image.width);
-  const int height = std::max(1, width * image.height / std::max(1, image.width));
-  cv::Mat view(image.height, image.width, CV_8UC3, const_cast<Rgb*>(image.data.data()));  // only read
-  ColorImage small(width, height);
-  cv::Mat result(height, width, CV_8UC3, small.data.data());
-  cv::resize(view, result, result.size(), 0, 0, cv::INTER_AREA);
   constexpr int kQuality = 75;
-  return page::jpeg_source(small, kQuality);
+  return page::jpeg_source(narrowed(image, width_px), kQuality);
 }
 
 ColorImage color_of(const GreyImage& grey) {

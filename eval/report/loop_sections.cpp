@@ -89,14 +89,15 @@ page::PageTable::Row row_of(const run_charts::RunSeries& run) {
 std::string explanation() {
   return fmt::format(
       "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
-      "alike or see the same by the poses so far, and a loop one that was accepted. Online: each pose as it "
-      "was known when its frame came; "
-      "final: as all were known at the end. Mode \"its own\": the system closes loops by its method, and "
+      "alike or see the same by the poses so far, and a loop is an accepted candidate. Online: each pose as "
+      "estimated when its frame was processed; final: as estimated at the end. Mode \"its own\": the system "
+      "closes loops by its method, and "
       "keeps no list of them. Returns: places that see {:.0f} % or more of what an older "
-      "place saw, by the true poses, and how many of them have a loop; blurred are those with more "
+      "place saw, by the ground truth, and how many of them have a loop; blurred are those with more "
       "than {:.0f} px of motion blur. False: loops that are off by more than {:.0f} cm or {:.0f} "
-      "degrees, and by more than {:.0f} sigmas of what they claim. NEES: squared error of loops by "
-      "what they claim, a number an axis; 1 is consistent. ATE with true loops: of the final poses if "
+      "degrees, and by more than {:.0f} of their own standard deviations. NEES: squared error of "
+      "loops, normalised by their covariance and divided by the number of axes; 1 is consistent. ATE with "
+      "true loops: of the final poses if "
       "every return had a true loop.",
       100 * loop_error::kRevisitOverlap, loop_error::kBlurred_px,
       run_charts::kCentimetres * loop_error::kFalseTranslation_m, degrees(loop_error::kFalseRotation_rad),

@@ -1,6 +1,8 @@
 #include "eval/report/model_scene.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -9,6 +11,11 @@
 #include "eval/mesh_error/error_colors.hpp"
 #include "eval/mesh_error/mesh_clustering.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/mesh_error/surfel_discs.hpp"
+#include "eval/page/figures.hpp"
+#include "eval/page/image_source.hpp"
+#include "eval/report/model_picture.hpp"
+#include "eval/report/narrowed_image.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::report {
@@ -50,10 +57,29 @@ void move(PreciseMesh& mesh, const SE3& T_new_old) {
   for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal.cast<double>()).cast<float>();
 }
 
+/// Of "#0067a8".
+Rgb rgb_of(std::string_view colour) {
+  Rgb rgb{};
+  for (std::size_t channel = 0; channel < rgb.size(); ++channel) {
+    const char* const digits = colour.data() + 1 + 2 * channel;
+    std::from_chars(digits, digits + 2, rgb[channel], 16);
+  }
+  return rgb;
+}
+
+/// path: in the frame of its first camera.
+ColorImage picture_of_model(PreciseMesh mesh, const page::ScenePath& path, const SE3& T_first_world) {
+  const SE3 T_world_first = T_first_world.inverse();
+  std::vector<SE3> poses;
+  for (const page::TimedPose& pose : path.poses) poses.push_back(T_world_first * pose.T_scene_camera);
+  return model_picture(mesh_error::with_discs(std::move(mesh)), poses,
+                       rgb_of(page::figure_colour(path.colour)));
+}
+
 }  // namespace
 
 page::PageScene model_scene(std::span<const run_charts::RunSeries> runs, const SceneDetail& detail,
-                            std::vector<std::string>& warnings) {
+                            const PictureTaker& take_picture, std::vector<std::string>& warnings) {
   page::PageScene scene;
   scene.largest_error_m = kLargestError_m;
   scene.up = {0, -1, 0};  // of the first camera, whose y points down and whose z points ahead
@@ -62,7 +88,7 @@ page::PageScene model_scene(std::span<const run_charts::RunSeries> runs, const S
     const auto file = run.run->folder / "mesh.ply";
     if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
     const auto checked = run_files::check_file(run.run->folder, run.run->record, "mesh.ply");
-    const auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
+    auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
     if (!mesh) warnings.push_back(mesh.error().message);
     if (!mesh || (mesh->triangles.empty() && mesh->radii_m.empty())) continue;
     page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, detail.triangles), {}};
@@ -72,8 +98,13 @@ page::PageScene model_scene(std::span<const run_charts::RunSeries> runs, const S
       const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
       shown.error_colors = mesh_error::error_colors(errors_m, kLargestError_m);
     }
-    scene.meshes.push_back(std::move(shown));
     scene.paths.push_back(path_of(run, detail.poses));
+    if (!scene.paths.back().poses.empty()) {
+      const ColorImage picture = picture_of_model(*std::move(mesh), scene.paths.back(), run.T_first_world);
+      shown.picture_uri = page::png_source(narrowed(picture, detail.picture_width_px));
+      if (take_picture) take_picture(run, picture);
+    }
+    scene.meshes.push_back(std::move(shown));
   }
   look_at_most(scene);
   return scene;

@@ -1,6 +1,9 @@
 // The first table of a page of runs: which method won on which recording, and by how much.
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "eval/findings/ranking.hpp"
 #include "eval/page/page.hpp"
 #include "eval/tables/table.hpp"
@@ -9,8 +12,10 @@ namespace fusebench::report {
 
 /// Recordings by methods, each cell with its range over replicates, the share of tracked frames and
 /// undetected failures, and the mean ratio to the best of each recording below. Of many methods: methods by
-/// recordings. only: whether it is the page's only ranking.
+/// recordings. A number leads to the picture of the first of its runs that has one. pictures: files, one a
+/// run; empty: none. only: whether it is the page's only ranking.
 [[nodiscard]] page::PageSection overview_section(const findings::Ranking& ranking,
-                                                 const tables::ResultTable& table, bool only);
+                                                 const tables::ResultTable& table,
+                                                 std::span<const std::string> pictures, bool only);
 
 }  // namespace fusebench::report

@@ -183,8 +183,8 @@ PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
   result.text += fmt::format(
       " grey levels. From left to right, all at one scale: the patch in the frame before; its grey levels "
       "where they are expected in this frame; what the image has there; the absolute difference (black 0, "
-      "white {:.0f} grey levels and more). Light blue is where there is nothing: beside a patch, where it is "
-      "stretched or hidden, and outside of the image. The patches shown are evenly spaced in the list of "
+      "white {:.0f} grey levels and more). Light blue: no pixel (next to a patch, where it is stretched or "
+      "hidden, and outside of the image). The patches shown are evenly spaced in the list of "
       "those, from left to right in the image.",
       kBrightestDifference_grey);
   for (std::size_t k = 0; k < std::min(kPatches, common.size()); ++k) {

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "eval/page/figures.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/report/loop_sections.hpp"
 #include "eval/report/model_scene.hpp"
@@ -87,9 +88,9 @@ std::vector<run_charts::RunSeries> series_to_draw(RunsOfRecording drawn, RunsOfR
 void add_curves(Sections& sections, std::span<const run_charts::RunSeries> series, const PageDetail& detail) {
   const bool revised =
       std::ranges::any_of(series, [](const run_charts::RunSeries& run) { return !run.final_poses.empty(); });
-  const std::string which =
-      revised ? "Poses as each was known when its frame came; final ones are under Loops and final poses."
-              : "";
+  const std::string which = revised ? "Online poses, as estimated when each frame was processed; final poses "
+                                      "are under Loops and final poses."
+                                    : "";
   add_charts(sections, "Trajectories", run_charts::view_charts(series, detail.buckets), which);
   add_charts(sections, "Trajectories coloured by their error",
              run_charts::error_path_charts(series, detail.buckets), which);
@@ -109,6 +110,28 @@ void add_patches(Sections& sections, std::span<const LabelledPatches> patches,
   const auto time_s =
       framed == series.end() ? std::nullopt : std::optional(framed->time_s(pictures.timestamp_ns));
   sections.push_back({"Patches", pictures.text, page_images(pictures, time_s), 3});
+}
+
+/// pictures: one a run of the group.
+void add_models(RecordingSections& result, std::span<const run_charts::RunSeries> series,
+                RunsOfRecording group, const PageContext& context, std::span<std::string> pictures) {
+  const PageDetail& detail = context.detail;
+  page::PageSection& head = result.sections.front();
+  const PictureTaker write = [&](const run_charts::RunSeries& run, const ColorImage& picture) {
+    auto file = context.writer(page::file_name_of(head.title + " " + run.label), picture);
+    if (file) pictures[place_of(*run.run, group)] = std::move(*file);
+    if (!file) result.warnings.push_back(file.error().message);
+  };
+  page::PageScene scene = model_scene(series, {detail.triangles, detail.buckets, detail.picture_width_px},
+                                      context.writer ? write : PictureTaker(), result.warnings);
+  auto& rows = std::get<page::PageTable>(head.content).rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].links = {pictures[i]};
+  if (scene.meshes.empty()) return;
+  result.sections.push_back(
+      {"Models",
+       "Simplified for this page; mesh.ply of each run has all triangles. Lines: camera path, "
+       "and where the camera was at the chosen time.",
+       std::move(scene), 3});
 }
 
 Trajectory estimate_of(const std::vector<run_charts::ComparedPose>& poses) {
@@ -167,14 +190,7 @@ RecordingSections recording_sections(RunsOfRecording group, const PageContext& c
     add_failures(failures, run, context.methods[first + place_of(*run.run, group)]);
   add_curves(sections, series, detail);
   add_patches(sections, patches, series);
-  if (page::PageScene scene = model_scene(series, {detail.triangles, detail.buckets}, result.warnings);
-      !scene.meshes.empty()) {
-    sections.push_back(
-        {"Models",
-         "Simplified for this page; mesh.ply of each run has all triangles. Lines: camera path, "
-         "and where the camera was at the chosen time.",
-         std::move(scene), 3});
-  }
+  add_models(result, series, group, context, context.pictures.subspan(first, group.size()));
   add_charts(sections, "Health and time", run_charts::tracking_charts(series, detail.buckets));
   add_charts(sections, "Profiles", run_charts::profile_charts(series));
   std::vector<page::PageDetails> details;

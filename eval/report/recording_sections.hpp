@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,12 @@ struct PageDetail {
   std::size_t buckets = 0;     ///< of charts over time
   std::size_t triangles = 0;   ///< of a mesh
   std::size_t in_between = 0;  ///< images of a recording for its time line
+  int picture_width_px = 0;    ///< of the picture of a mesh
 };
+
+/// Writes the picture of a run's model beside the page, and returns the name of its file. run: recording and
+/// label. Errors: io.
+using PictureWriter = std::function<Result<std::string>(const std::string& run, const ColorImage& picture)>;
 
 /// What is the same for all recordings of a page.
 struct PageContext {
@@ -27,6 +34,8 @@ struct PageContext {
   std::vector<std::size_t> colours;  ///< one a run
   PageDetail detail;
   const FrameReader& reader;
+  const PictureWriter& writer;      ///< none: pictures are on the page alone
+  std::span<std::string> pictures;  ///< one a run: the files of those that were written
 };
 
 struct RecordingSections {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
@@ -21,10 +22,12 @@ PageDetail detail_for(std::size_t runs, std::size_t recordings) {
   constexpr std::size_t kBuckets = 12'000;  // of all runs together
   constexpr std::size_t kTriangles = 400'000;
   constexpr std::size_t kImages = 100;
+  constexpr double kPicturePixels = 2e6;
   const std::size_t share = std::max<std::size_t>(runs, 1);
   return {std::clamp<std::size_t>(kBuckets / share, 40, 450),
           std::clamp<std::size_t>(kTriangles / share, 1'500, 40'000),
-          std::min<std::size_t>(kImages / std::max<std::size_t>(recordings, 1), 16)};
+          std::min<std::size_t>(kImages / std::max<std::size_t>(recordings, 1), 16),
+          std::clamp(static_cast<int>(std::sqrt(kPicturePixels / static_cast<double>(share))), 200, 800)};
 }
 
 std::vector<std::size_t> colours_of(const std::vector<run_files::FoundRun>& runs,
@@ -47,20 +50,19 @@ bool has_many_charts(std::size_t recordings, const std::vector<std::string>& met
 }  // namespace
 
 ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title,
-                         const FrameReader& reader) {
+                         const FrameReader& reader, const PictureWriter& writer) {
   ResultsPage result;
   const auto ok = std::ranges::count_if(
       runs, [](const run_files::FoundRun& run) { return run.record.status == record::RunStatus::ok; });
   result.page.title = title;
   result.page.subtitle = fmt::format("{} of {} runs ok.", ok, runs.size());
-  result.page.sections = summary_sections(runs);
-  result.tables = result.page.sections.size();
   const std::vector<RunsOfRecording> groups = runs_by_recording(runs);
   std::size_t drawn = 0;
   for (const RunsOfRecording group : groups) drawn += std::min(group.size(), kMostDrawn);
   const std::vector<std::string> methods = run_files::RunSet(runs).methods();
-  const PageContext context{runs, methods, colours_of(runs, methods), detail_for(drawn, groups.size()),
-                            reader};
+  std::vector<std::string> pictures(runs.size());
+  const PageContext context{
+      runs, methods, colours_of(runs, methods), detail_for(drawn, groups.size()), reader, writer, pictures};
   speed_failures::FailureSections failures;
   const bool folded = has_many_charts(groups.size(), methods);
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -69,10 +71,11 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
     std::ranges::move(recording.sections, std::back_inserter(result.page.sections));
     std::ranges::move(recording.warnings, std::back_inserter(result.warnings));
   }
-  const std::vector<page::PageSection> by_speed = failures.sections();
-  result.page.sections.insert(result.page.sections.begin() + static_cast<std::ptrdiff_t>(result.tables),
-                              by_speed.begin(), by_speed.end());
-  result.tables += by_speed.size();
+  std::vector<page::PageSection> tables = summary_sections(runs, pictures);
+  std::ranges::move(failures.sections(), std::back_inserter(tables));
+  result.tables = tables.size();
+  result.page.sections.insert(result.page.sections.begin(), std::make_move_iterator(tables.begin()),
+                              std::make_move_iterator(tables.end()));
   return result;
 }
 

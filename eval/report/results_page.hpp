@@ -7,6 +7,7 @@
 
 #include "eval/page/page.hpp"
 #include "eval/report/frame_pictures.hpp"
+#include "eval/report/recording_sections.hpp"
 #include "eval/run_files/found_runs.hpp"
 
 namespace fusebench::report {
@@ -18,8 +19,9 @@ struct ResultsPage {
 };
 
 /// As many runs as there are; details are thinned so that the page stays within some megabytes. title: shown
-/// at the top. reader: of pictures of the recordings, which the runs do not keep.
+/// at the top. reader: of pictures of the recordings, which the runs do not keep. writer: of pictures of the
+/// models, to which the page's tables then have links.
 [[nodiscard]] ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title,
-                                       const FrameReader& reader = {});
+                                       const FrameReader& reader = {}, const PictureWriter& writer = {});
 
 }  // namespace fusebench::report

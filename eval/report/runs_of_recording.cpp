@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "eval/record/data_labels.hpp"
 
@@ -49,9 +50,12 @@ std::string title_of(const record::RecordedRecording& recording,
 }
 
 std::string facts_of(const record::RecordedRecording& recording) {
+  const std::string data = record::data_cell(record::words_of(recording));
+  constexpr std::string_view kRecorded = "recorded";
   return fmt::format("{}, format {}, {} frames over {:.1f} s; ground truth: {}.",
-                     record::data_cell(record::words_of(recording)), recording.format, recording.frames,
-                     recording.duration_s, recording.truth.empty() ? "unknown" : recording.truth);
+                     data.starts_with(kRecorded) ? "real" + data.substr(kRecorded.size()) : data,
+                     recording.format, recording.frames, recording.duration_s,
+                     recording.truth.empty() ? "unknown" : recording.truth);
 }
 
 page::PageTable run_facts(RunsOfRecording group, const RunLabels& labels) {

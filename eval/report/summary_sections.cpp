@@ -58,24 +58,24 @@ page::PageSection findings_section(const std::vector<run_files::FoundRun>& runs,
 
 page::PageTable::Row compared_row(const findings::Ranking& ranking,
                                   const findings::RankedConfiguration& configuration) {
+  const aggregate::RatioMean& mean = configuration.mean;
   std::string interval = "-";
-  if (configuration.to_best && configuration.to_best->interval) {
-    const auto& [low, high] = *configuration.to_best->interval;
+  if (mean.interval) {
+    const auto& [low, high] = *mean.interval;
     interval = fmt::format("{:.2f} to {:.2f}", low, high);
   }
   return {{configuration.label, configuration.description,
            fmt::format("{}/{}", configuration.ok, configuration.runs),
            tables::shown_value(*ranking.metric, configuration.value),
-           configuration.to_best ? fmt::format("{:.2f}", configuration.to_best->ratio) : "-",
-           std::move(interval)},
+           mean.ratio ? fmt::format("{:.2f}", *mean.ratio) : "-", std::move(interval)},
           configuration.ok < configuration.runs ? "warning" : ""};
 }
 
 /// What each configuration is, and how it compares with the best.
 page::PageSection compared_section(const findings::Ranking& ranking, bool only) {
   page::PageTable table;
-  table.header = {"configuration",    "what it is",   "runs ok", std::string(ranking.metric->heading),
-                  "times the best's", "95 % interval"};
+  table.header = {"configuration",  "what it is",   "runs ok", std::string(ranking.metric->heading),
+                  "times the best", "95 % interval"};
   const std::size_t count = std::min(ranking.configurations.size(), kMostCompared);
   for (std::size_t i = 0; i < count; ++i)
     table.rows.push_back(compared_row(ranking, ranking.configurations[i]));
@@ -84,9 +84,8 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
     if (ranking.configurations.front().value && count > 1 && is_best) row.best = {3};
   }
   std::string text = fmt::format(
-      "Geometric means over {} {} recording{}; ratios and their intervals (Student's t on logarithms) over "
-      "the "
-      "recordings that both have numbers of.",
+      "Geometric means over {} {} recording{}; times the best: of the ratio to the smallest number of each "
+      "recording, with its interval by bootstrap over recordings and replicates.",
       ranking.recordings, ranking.data_word(), ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
@@ -115,12 +114,13 @@ void add_systems(const std::vector<run_files::FoundRun>& runs, std::vector<page:
 
 }  // namespace
 
-std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs) {
+std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs,
+                                                std::span<const std::string> pictures) {
   const tables::ResultTable table = tables::table_of(runs);
   const std::vector<findings::Ranking> rankings = findings::rankings_of(runs, table);
   std::vector<page::PageSection> sections;
   for (const findings::Ranking& ranking : rankings)
-    sections.push_back(overview_section(ranking, table, rankings.size() == 1));
+    sections.push_back(overview_section(ranking, table, pictures, rankings.size() == 1));
   sections.push_back(findings_section(runs, table, rankings));
   for (const findings::Ranking& ranking : rankings)
     sections.push_back(compared_section(ranking, rankings.size() == 1));

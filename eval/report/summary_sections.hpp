@@ -1,6 +1,8 @@
 // What stands at the head of a page of runs: what was found, what was compared, and the tables of all runs.
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "eval/page/page.hpp"
@@ -8,7 +10,9 @@
 
 namespace fusebench::report {
 
-/// In the order in which they are read. The first says in words what came out.
-[[nodiscard]] std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs);
+/// In the order in which they are read. The first has the answer. pictures: files with pictures of the
+/// models, one a run; empty: none.
+[[nodiscard]] std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs,
+                                                              std::span<const std::string> pictures);
 
 }  // namespace fusebench::report

@@ -53,7 +53,7 @@ Result<std::vector<ResultColumn>> columns_of(const Table1Protocol& protocol,
     if (std::ranges::find(numbers, column.group, &RecordingNumbers::group) == numbers.end()) continue;
     const auto row = std::ranges::find(published->rows, column.row, &tables::PublishedRow::label);
     check(row != published->rows.end() && row->published.size() == 2,
-          "each column of the reproduction stands for a row of the published table");
+          "each column of the reproduction must name a row of the published table");
     columns.push_back(
         {column, row->group, row->published.front().value_or(0), row->published.back().value_or(0)});
   }

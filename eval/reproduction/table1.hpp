@@ -1,4 +1,4 @@
-// The paper's Table 1 beside what the readings of it give here.
+// The paper's Table 1 and the results of its readings.
 #pragma once
 
 #include <array>

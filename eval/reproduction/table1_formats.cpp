@@ -272,7 +272,7 @@ page::PageTable readings_table(const Table1& table) {
 }
 
 page::PageTable columns_table(const Table1& table) {
-  page::PageTable columns{{"column", "stands for", "speed", "what it is"}, {}};
+  page::PageTable columns{{"column", "replaces", "speed", "what it is"}, {}};
   for (const ResultColumn& column : table.columns)
     columns.rows.push_back({{column.column.group, column.column.row, column.speed, column.column.is}, ""});
   for (const std::string& absent : table.absent) columns.rows.push_back({{absent, "", "", "not there"}, ""});

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "eval/record/true_camera.hpp"
+#include "eval/record/record_origin.hpp"
 
 namespace fusebench::run {
 

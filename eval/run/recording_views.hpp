@@ -1,4 +1,4 @@
-// From where a recording saw its scene.
+// Camera views of a recording: ground-truth poses, intrinsics and depth images.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ struct RecordedViewOptions {
   double min_depth_m = 0;
   double max_depth_m = 0;
   mesh_error::Culling culling = mesh_error::Culling::occlusion;
-  std::size_t every_frames = 10;  ///< the first frame, and every so many after it
+  std::size_t every_frames = 10;  ///< interval of the used frames, from the first one on
 };
 
-/// The true colour cameras at frames of a recording, where its ground truth has no gap of more than 0.1 s;
+/// The colour camera at frames of a recording, for frames within gaps of the ground truth up to 0.1 s;
 /// with Culling::depth also their depth images. Errors: those of Recording::load_frame.
 [[nodiscard]] Result<mesh_error::MeshViews> recorded_views(const recording::Recording& recording,
                                                            const RecordedViewOptions& options);

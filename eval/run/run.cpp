@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,26 +13,34 @@
 #include <vector>
 
 #include "core/all_systems.hpp"
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/io/staged_folder.hpp"
+#include "core/loops/loop_closure.hpp"
+#include "core/loops/loop_tables.hpp"
 #include "core/meshing/marching_cubes.hpp"
+#include "core/systems/system.hpp"
 #include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/loop_error/loop_error.hpp"
+#include "eval/loop_error/loop_metrics.hpp"
 #include "eval/preparation/preparation.hpp"
 #include "eval/preparation/prepared_recording.hpp"
 #include "eval/preparation/sensor_check.hpp"
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
+#include "eval/record/record.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/truth_contradiction.hpp"
-#include "eval/run/loop_results.hpp"
-#include "eval/run/program_run.hpp"
-#include "eval/run/revised_poses.hpp"
+#include "eval/run/foreign_runs.hpp"
+#include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 #include "eval/run/run_frames.hpp"
-#include "eval/run_files/nees_table.hpp"
+#include "eval/run_files/filter_tables.hpp"
 #include "eval/run_files/patch_table.hpp"
 
 namespace fusebench::run {
@@ -101,20 +111,26 @@ void log_sensors(const record::RunRecord& record, RunProgress& progress) {
 void log_silent_failures(const record::RunRecord& record, RunProgress& progress) {
   if (record.metrics.silent_frames().value_or(0) == 0) return;
   const record::RecordedSilentFailures& silent = *record.metrics.silent.value;
-  progress.log += fmt::format("{} of {} claimed poses are wrong (undetected failures), from frame {} on\n",
+  progress.log += fmt::format("{} of {} poses are wrong (undetected failures), from frame {} on\n",
                               silent.failures.silent, silent.failures.judged,
                               record.recording.first_frame + silent.first_frame.value_or(0));
 }
 
 /// Inertial samples that results would be invalid with are refused; of other contradictions there are
-/// warnings. A large bias of the gyroscope, and a large offset of the IMU's clock, are taken out.
+/// warnings. A measured depth camera that contradicts the calibration is used. A large bias of the gyroscope
+/// and a large offset of the IMU's clock are removed from the samples. A recording that is too short for
+/// these measurements is checked for a wrong unit or wrong axes of its IMU only.
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
-  if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
+  const bool is_measured = preparation::is_long_enough(run.recording);
+  const bool has_own_imu = run.recording.imu_source == recording::ImuSource::recorded;
+  if (!run.spec.prepare || (!is_measured && !has_own_imu)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
   if (auto refused = preparation::refusal(checked, run.recording.name))
     return tl::unexpected(*std::move(refused));
   for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
+  if (!is_measured) return {};
+  if (checked.depth_camera) preparation::use_depth_camera(run.recording, *checked.depth_camera);
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
   if (checked.imu_time_offset_s) preparation::take_out_time_offset(run.recording, *checked.imu_time_offset_s);
   return {};
@@ -134,6 +150,62 @@ Result<void> measure_constants(PreparedRun& run, const Workers& workers, const R
     return tl::unexpected(error);
   run.recording.notes.push_back("not prepared: " + error.message);
   return {};
+}
+
+struct LoopResults {
+  std::string candidates;                                       ///< loops.csv
+  std::string places;                                           ///< places.csv
+  std::string log;                                              ///< a line: how many there were
+  std::optional<record::Outcome<loop_error::LoopError>> error;  ///< if there is ground truth
+};
+
+std::string counts_line(const loops::LoopClosure& closure) {
+  const auto accepted = std::ranges::count_if(closure.candidates(), &loops::LoopCandidate::accepted);
+  return fmt::format("loops: {} places, {} candidates, {} accepted, poses corrected {} times on the way\n",
+                     closure.places().size(), closure.candidates().size(), accepted,
+                     closure.online_corrections());
+}
+
+/// What a run says of loops. truth: of the camera, at the stamps of the frames; empty if there is none.
+/// closure: of a system after its last frame; nullptr of one that does not look for loops.
+LoopResults loop_results(const loops::LoopClosure* closure, const Trajectory& truth,
+                         const PinholeCamera& camera, const config::DepthConfig& depth,
+                         const config::LoopsConfig& loops) {
+  if (closure == nullptr) return {};
+  LoopResults results{
+      loops::candidate_table(*closure), loops::place_table(*closure), counts_line(*closure), {}};
+  if (truth.empty()) return results;
+  results.error = record::Outcome<loop_error::LoopError>::from(
+      loop_error::loop_error(*closure, truth, camera, depth, loops));
+  return results;
+}
+
+/// The revised poses of the system; nothing if it has none, or the run did not come to its end. What goes
+/// wrong ends the run and is in the progress. Errors: run_failed (a stop).
+Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
+                                                const RunControl& control) {
+  if (progress.status == record::RunStatus::failed || progress.frames.tracked == 0) return std::nullopt;
+  auto revised = system.revise();
+  if (!revised) {
+    if (control.is_stopped()) return tl::unexpected(revised.error());
+    progress.end(record::RunStatus::failed, "revising the poses: " + revised.error().message);
+    return std::nullopt;
+  }
+  if (!*revised) return std::nullopt;
+  progress.log +=
+      fmt::format("poses revised at the end: {} frames, the model fused again\n", (*revised)->size());
+  return revised;
+}
+
+/// The input of the metrics: the revised poses with the mesh of the online output.
+RunOutput final_output(const Trajectory& revised, const RunOutput& online) {
+  RunOutput output;
+  output.has_filter = false;
+  output.trajectory = revised;
+  for (const filter::StampedEstimate& state : online.states)
+    output.states.push_back({state.timestamp_ns, {}});
+  output.mesh = online.mesh;
+  return output;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// One specification in, one record and one folder out. The only place that knows recordings, estimator and
-// metrics.
+// Executes one run: from its specification to its record and folder. The only unit that uses recordings,
+// estimator and metrics.
 #pragma once
 
 #include "core/base/error.hpp"
@@ -10,9 +10,9 @@
 
 namespace fusebench::run {
 
-/// Runs it and puts its folder in place. A run that is lost or fails on the way is a record with that status
-/// and its reason, and its folder holds what there is. Errors: io if the folder cannot be written, run_failed
-/// if it was stopped, data_missing and data_corrupt if bad data is not recorded; nothing is left behind then.
+/// Executes the run and commits its folder. A run that is lost or fails gives a record with that status and
+/// the reason, and a folder with the files so far. Errors: io if the folder cannot be written, run_failed
+/// if it was stopped, data_missing and data_corrupt if bad data is not recorded; no files remain then.
 [[nodiscard]] Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& control = {});
 
 }  // namespace fusebench::run

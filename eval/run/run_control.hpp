@@ -1,4 +1,4 @@
-// How a caller follows and stops a run.
+// Progress callbacks and stop flag of a run.
 #pragma once
 
 #include <atomic>
@@ -10,10 +10,9 @@ namespace fusebench::run {
 struct RunControl {
   std::function<void(std::size_t frame, std::size_t total)> progress = {};  ///< after each frame
   const std::atomic<bool>* stop =
-      nullptr;  ///< checked at each frame; true ends the run and leaves nothing behind
-  /// Bad data met on the way (a damaged image) makes a record with status failed, as a suite needs it, which
-  /// goes on. Otherwise it is an error of the run like any bad data met on opening, and nothing is left
-  /// behind.
+      nullptr;  ///< checked at each frame; true ends the run and removes its files
+  /// Bad data during the run (a damaged image) gives a record with status failed, for suites. With false it
+  /// is an error, like bad data on opening, and no files remain.
   bool bad_data_is_recorded = true;
   std::function<void()> preparing = {};  ///< before the recording is prepared, which takes seconds
 

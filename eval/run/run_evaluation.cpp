@@ -11,7 +11,6 @@
 #include "core/trajectory/trajectory.hpp"
 #include "eval/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
-#include "eval/record/true_camera.hpp"
 #include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run/recording_views.hpp"
 #include "eval/trajectory_error/fitted_offset.hpp"

@@ -1,4 +1,4 @@
-// All metrics of one run, from what its frames left behind and what is known of the recording.
+// Computes all metrics of one run from the results of its frames and the ground truth of the recording.
 #pragma once
 
 #include <optional>
@@ -17,26 +17,26 @@
 
 namespace fusebench::run {
 
-/// What metrics need of a run.
+/// The input of the metrics.
 struct RunOutput {
   bool has_filter = true;  ///< a filter with patches: there are states, covariances, intensities, residuals
-  Trajectory trajectory;   ///< frames that were tracked; a predicted pose is no estimate
+  Trajectory trajectory;   ///< poses of tracked frames, without predicted poses
   std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants; without a
   ///< filter the instants alone
   std::optional<filter::GaussianState> last_state;  ///< of the last one; none without a filter
   metrics::IntensityAccumulator intensity;
-  metrics::IntensityReadingsAccumulator intensity_readings;  ///< empty if they are not asked for
+  metrics::IntensityReadingsAccumulator intensity_readings;  ///< empty unless requested
   metrics::ResidualAccumulator residuals;
   Mesh mesh;  ///< of the model, in world
 };
 
-/// config: of the run; it says what of a true scene its depth could observe, and whether the body that it
-/// estimates is the IMU or the camera.
+/// config: of the run; sets which part of the ground-truth mesh is observable by depth, and whether the
+/// estimated body is the IMU or the camera.
 [[nodiscard]] record::RecordedMetrics metrics_of(const RunOutput& output,
                                                  const recording::Recording& recording,
                                                  const config::Config& config, const Workers& workers);
 
-/// The constants of the sensors after the last tracked frame, as far as they were estimated.
+/// The estimated sensor constants after the last tracked frame.
 [[nodiscard]] std::vector<filter::SensorConstant> estimated_sensors(const RunOutput& output,
                                                                     const SensorTiming& timing);
 

@@ -16,9 +16,9 @@ namespace fusebench::run {
 /// A file of a run's folder by its name.
 using NamedText = std::pair<std::string_view, std::string>;
 
-/// Writes mesh.ply (nullptr: none; its vertices get their errors where there is a true scene), the texts that
-/// are not empty, and the record, and commits the folder. The record gets the sizes and hashes of the files.
-/// Error io.
+/// Writes mesh.ply (nullptr: none; with errors of its vertices if there is a ground-truth mesh), the texts
+/// that are not empty, and the record, and commits the folder. The record gets the sizes and hashes of the
+/// files. Error io.
 [[nodiscard]] Result<void> write_run_folder(io::StagedFolder& folder, Mesh* mesh,
                                             std::span<const NamedText> texts, record::RunRecord& record);
 

@@ -157,6 +157,18 @@ void RunProgress::end(record::RunStatus how, std::string why) {
   log += fmt::format("{}: {}\n", record::to_string(status), reason);
 }
 
+Result<void> FrameReplay::visit(const FrameVisitor& visitor) const {
+  FrameSource source(run_.recording, run_.spec.threads > 1);
+  for (std::size_t frame = 0; frame < seen_; ++frame) {
+    if (control_.is_stopped()) return fail(ErrorCode::run_failed, "stopped by the user");
+    const auto loaded = source.next();
+    if (!loaded) return tl::unexpected(loaded.error());
+    if (auto visited = visitor(loaded->frame); !visited) return visited;
+    if (control_.progress) control_.progress(frame + 1, run_.recording.frames.size());
+  }
+  return {};
+}
+
 Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system, FrameReplay& replay,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;

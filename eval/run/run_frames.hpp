@@ -1,4 +1,4 @@
-// The frames of a run through its system, and what they leave behind for its files and metrics.
+// Processes the frames of a run and collects their results for files and metrics.
 #pragma once
 
 #include <array>
@@ -6,22 +6,41 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/base/replay.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/systems/system.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/frame_replay.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_placement.hpp"
+#include "eval/run_files/filter_tables.hpp"
 #include "eval/run_files/frame_table.hpp"
 #include "eval/run_files/patch_table.hpp"
-#include "eval/run_files/state_table.hpp"
 
 namespace fusebench::run {
 
-/// What the frames left behind; grows frame by frame.
+/// The replay interface of a run (base/replay.hpp).
+class FrameReplay {
+ public:
+  /// The references must outlive it.
+  FrameReplay(const PreparedRun& run, const RunControl& control) : run_(run), control_(control) {}
+
+  /// Sets the number of frames that the system has processed.
+  void set_seen(std::size_t frames) { seen_ = frames; }
+
+  /// Visits the processed frames in order. Errors: run_failed (a stop), those of the recording and the
+  /// visitor.
+  [[nodiscard]] Result<void> visit(const FrameVisitor& visitor) const;
+
+ private:
+  const PreparedRun& run_;
+  const RunControl& control_;
+  std::size_t seen_ = 0;
+};
+
+/// Results of the frames so far.
 struct RunProgress {
   record::RunStatus status = record::RunStatus::ok;
   std::string reason;
@@ -34,14 +53,14 @@ struct RunProgress {
   std::string log;
   double decode_ms = 0;
   std::array<double, health::kStageNames.size()> stage_ms{};
-  profile::RunProfile profile;  ///< stays without frames unless it is asked for
+  profile::RunProfile profile;  ///< empty unless requested
 
   void end(record::RunStatus how, std::string why);
 };
 
 /// Processes all frames; the replay, which the system was made with, follows. intensity.bin goes into
-/// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; whatever else
-/// goes wrong ends the run and is in the progress.
+/// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; any other
+/// failure ends the run and is stored in the progress.
 [[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                                  FrameReplay& replay, const io::StagedFolder& folder,
                                                  const RunControl& control);

@@ -1,4 +1,4 @@
-// Where the results of a run lie, and what is there already.
+// The folder of a run by its identity, and the run that it contains.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace fusebench::run {
 
-/// An opened recording with its place among the results; nothing is written yet.
+/// An opened recording with the run's folder, which is not created yet.
 struct PreparedRun {
   RunSpec spec;
   recording::Recording recording;  ///< the window, with the IMU that the run will use
@@ -24,33 +24,33 @@ struct PreparedRun {
 
 /// 32 hex digits: identifies the values of the configuration, the content of the recording and its window,
 /// the camera, the IMU with the way it was made (seed, sensor, fit), and the version of the estimator
-/// (BuildInfo::estimator), or in its place the external program. Runs of one identity have the same results.
+/// (BuildInfo::estimator) or the external program. Runs of one identity have the same results.
 [[nodiscard]] std::string run_identity(const RunSpec& spec, const recording::Recording& recording);
 
-/// What engines ask of a run that is there.
+/// The summary of an existing run for engines.
 struct RecordHead {
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;
-  std::string run_id;  ///< empty if the record does not say it, or cannot be read
+  std::string run_id;                                      ///< empty if missing or unreadable
   run_files::RunState state = run_files::RunState::whole;  ///< failed if it is not whole
-  std::vector<std::string> missing{};                      ///< recorded files that are not there
+  std::vector<std::string> missing{};                      ///< recorded files that do not exist
   bool has_model = false;                                  ///< the run reconstructed something
 };
 [[nodiscard]] RecordHead head_of(const run_files::FoundRun& run);
-/// Reads the whole record and looks at the sizes of the files. Nothing if there is no record in the folder.
+/// Reads the record and checks the sizes of the files. nullopt if the folder has no record.
 [[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);
 
-/// Folders of runs that are planned, with their identities.
+/// Identities of planned runs by their folders.
 using TakenFolders = std::map<std::filesystem::path, std::string>;
 
-/// Its place: that of its identity, with more digits if those are taken by another one, there or in `taken`.
+/// The folder of the identity, with more digits if another identity has it on disk or in `taken`.
 [[nodiscard]] PreparedRun place_run(RunSpec spec, recording::Recording recording,
                                     const TakenFolders& taken = {});
 
 /// open_for_run() and place_run(), after checking the relations between options (error configuration).
 [[nodiscard]] Result<PreparedRun> prepare_run(RunSpec spec);
 
-/// The record before anything has come out: what is asked, and what will make it. Status failed.
+/// The record before the run: specification, recording and program; status failed.
 [[nodiscard]] record::RunRecord requested_record(const PreparedRun& run);
 
 }  // namespace fusebench::run

@@ -50,7 +50,7 @@ tl::unexpected<Error> no_imu(const recording::Recording& recording, const RunSpe
     return fail(ErrorCode::usage,
                 fmt::format("{}: imu = \"recorded\", and recording '{}' has no inertial samples",
                             spec.program->file.string(), recording.name),
-                has_truth ? "--imu synthetic makes some from the ground truth and says so in every table"
+                has_truth ? "--imu synthetic makes samples from the ground truth; every table labels them"
                           : fmt::format("imu = \"none\" runs it without; {}", no_truth));
   if (const auto edit = edit_that_needs_imu(spec.config)) {
     return fail(ErrorCode::usage,
@@ -62,10 +62,9 @@ tl::unexpected<Error> no_imu(const recording::Recording& recording, const RunSpe
   return fail(
       ErrorCode::usage,
       fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
-      has_truth
-          ? "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so "
-            "in every table; --variant no-imu does without"
-          : fmt::format("--variant no-imu and dm-no-imu do without; {}", no_truth));
+      has_truth ? "--imu synthetic (or auto) makes an IMU from the ground truth, and every table labels it; "
+                  "--variant no-imu needs none"
+                : fmt::format("--variant no-imu and dm-no-imu do without; {}", no_truth));
 }
 
 Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {

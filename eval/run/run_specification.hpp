@@ -1,4 +1,4 @@
-// What one run is asked to do, and the recording as it sees it.
+// The specification of a run, and the recording with its window and IMU.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@
 
 namespace fusebench::run {
 
-/// Which IMU a variant that needs one gets.
+/// The inertial samples of a variant with an IMU.
 enum class ImuChoice {
-  recorded,   ///< the recording's own; without one, the run is refused
-  synthetic,  ///< one made from the ground truth, even if the recording has its own
-  automatic,  ///< the recording's own, and where there is none, one made from the ground truth
+  recorded,   ///< the recording's own; an error if there are none
+  synthetic,  ///< made from the ground truth, even if the recording has its own
+  automatic,  ///< the recording's own, else made from the ground truth
 };
 
 /// Frames begin to end - 1, or to the last.
@@ -40,7 +40,7 @@ struct FrameWindow {
                                                        const datasets::OpenOptions& options,
                                                        const std::optional<FrameWindow>& window);
 
-/// Which files a run's folder keeps. In large sweeps the others would fill the disk.
+/// The files that a run's folder keeps.
 enum class KeptFiles {
   all,
   small,  ///< record, trajectories, frames.csv, nees.csv, log, and trace.json of a profiled run: no model,
@@ -48,7 +48,7 @@ enum class KeptFiles {
 };
 [[nodiscard]] std::string_view to_string(KeptFiles kept);  ///< "all", "small"
 
-/// What the command line, suites and kept invocations take.
+/// Limits of the command line, suites and stored invocations.
 inline constexpr int kMostThreads = 1024;  ///< of a run
 inline constexpr int kMostAtOnce = 1024;   ///< runs
 inline constexpr int kMostRepetitions = 1000;
@@ -60,13 +60,13 @@ struct RunSpec {
   ImuChoice imu = ImuChoice::recorded;
   std::string variant;             ///< or the name of the program
   config::EffectiveConfig config;  ///< the variant's, with all edits; a program's evaluation by defaults
-  /// What runs in place of a system of this program.
+  /// The external program that runs instead of a system of this program, or null.
   std::shared_ptr<const external::ExternalProgram> program = {};
   std::optional<FrameWindow> frames;
   int threads = 1;
-  int repetition = 1;  ///< the time is another sample; so are a program's results, unless it is deterministic
-  int replicate = 0;   ///< above 0: begins at trajectory::noisy_pose(); of a program it is another seed
-  bool prepare = false;  ///< first measure what the calibration leaves open (preparation.hpp)
+  int repetition = 1;    ///< a further sample of time, and of a non-deterministic program's results
+  int replicate = 0;     ///< above 0: starts at trajectory::noisy_pose(), a program with another seed
+  bool prepare = false;  ///< measures the timing that the calibration does not contain (preparation.hpp)
   KeptFiles kept = KeptFiles::all;
   bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
   std::filesystem::path out;
@@ -75,7 +75,7 @@ struct RunSpec {
 /// Whether the run is of the paper's filter and not of another system or program.
 [[nodiscard]] bool runs_filter(const RunSpec& spec);
 
-/// What {seed} of an external program stands for: another number for each repetition and replicate.
+/// The value of {seed} for an external program: different for each repetition and replicate.
 [[nodiscard]] int seed_of(const RunSpec& spec);
 
 /// Whether the run first measures constants of the recording's sensors. External programs do not get them.
@@ -84,11 +84,11 @@ struct RunSpec {
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);
 
-/// A sentence on edited options that the configuration's system is known not to have, as loops.mode of one
-/// that is not the filter; nothing if there are none.
+/// A sentence on edited options that the configured system does not use, such as loops.mode of another system
+/// than the filter; nullopt if there are none.
 [[nodiscard]] std::optional<std::string> options_without_effect(const config::EffectiveConfig& config);
 
-/// An opened recording as a run of that specification sees it: cut to the window, with its IMU. Errors: those
+/// Cuts an opened recording to the window of the specification and sets its IMU. Errors: those
 /// of select_frames and add_synthetic_imu; usage if the variant needs an IMU and there is none.
 [[nodiscard]] Result<recording::Recording> view_for_run(recording::Recording whole, const RunSpec& spec);
 

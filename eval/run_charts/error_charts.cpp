@@ -99,7 +99,7 @@ page::Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets
   page::Chart chart = chart_of(
       "Drift against the filter's own 3 sigma", "time [s]", "distance [cm]",
       "Position relative to the first frame, without alignment. Bands: 3 sigma of the longest axis, as "
-      "the filter has it; a curve above its band says that the filter is too certain.");
+      "the filter estimates it; where a curve is above its band, the filter is overconfident.");
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto first = std::ranges::find_if(
         runs[i].poses, [](const ComparedPose& p) { return p.T_truth_truth.has_value(); });

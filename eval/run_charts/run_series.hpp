@@ -12,7 +12,7 @@
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/frame_table.hpp"
 #include "eval/run_files/loop_table.hpp"
-#include "eval/run_files/nees_table.hpp"
+#include "eval/run_files/filter_tables.hpp"
 
 namespace fusebench::run_charts {
 

@@ -64,7 +64,8 @@ std::string health_text(const RunSeries& run) {
     ++counts[frame.is_in_map() ? frame.health : frame.status + " (" + frame.health + ")"];
   }
   std::string text = run.label + ":";
-  for (const auto& [health, count] : counts) text += fmt::format(" {} {},", count, health);
+  for (const auto& [health, count] : counts)
+    text += fmt::format(" {}{}{},", count, health.empty() ? "" : " ", health);
   text.back() = '.';
   return text;
 }

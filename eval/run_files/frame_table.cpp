@@ -111,15 +111,7 @@ Result<FrameTableRow> row_of(const NamedRow& cells) {
 }  // namespace
 
 Result<std::vector<FrameTableRow>> read_frame_table(const std::filesystem::path& file) {
-  std::vector<FrameTableRow> rows;
-  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
-    auto row = row_of(cells);
-    if (!row) return tl::unexpected(row.error());
-    rows.push_back(std::move(*row));
-    return {};
-  });
-  if (!done) return tl::unexpected(done.error());
-  return rows;
+  return read_named_rows(file, row_of);
 }
 
 }  // namespace fusebench::run_files

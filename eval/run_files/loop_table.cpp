@@ -52,43 +52,37 @@ Result<CandidateFate> fate_of(const NamedRow& cells) {
       [](bool pose) { return pose ? CandidateFate::depth_differs : CandidateFate::no_pose; });
 }
 
+Result<CandidateRow> candidate_of(const NamedRow& cells) {
+  const auto query_ns = cells.time_ns("query_s");
+  if (!query_ns) return tl::unexpected(query_ns.error());
+  const auto place_ns = cells.time_ns("place_s");
+  if (!place_ns) return tl::unexpected(place_ns.error());
+  return fate_of(cells).map([&](CandidateFate fate) { return CandidateRow{*query_ns, *place_ns, fate}; });
+}
+
+Result<PlaceRow> place_of(const NamedRow& cells) {
+  PlaceRow row;
+  const auto stamp = cells.time_ns("timestamp_s");
+  if (!stamp) return tl::unexpected(stamp.error());
+  row.timestamp_ns = *stamp;
+  const std::array<std::pair<const char*, double*>, 3> numbers = {
+      {{"blur_px", &row.blur_px}, {"candidates", &row.candidates}, {"accepted", &row.accepted}}};
+  for (const auto& [name, value] : numbers) {
+    const auto number = needed_number(cells, name);
+    if (!number) return tl::unexpected(number.error());
+    *value = *number;
+  }
+  return row;
+}
+
 }  // namespace
 
 Result<std::vector<CandidateRow>> read_candidate_table(const std::filesystem::path& file) {
-  std::vector<CandidateRow> rows;
-  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
-    const auto query_ns = cells.time_ns("query_s");
-    if (!query_ns) return tl::unexpected(query_ns.error());
-    const auto place_ns = cells.time_ns("place_s");
-    if (!place_ns) return tl::unexpected(place_ns.error());
-    const auto fate = fate_of(cells);
-    if (!fate) return tl::unexpected(fate.error());
-    rows.push_back({*query_ns, *place_ns, *fate});
-    return {};
-  });
-  if (!done) return tl::unexpected(done.error());
-  return rows;
+  return read_named_rows(file, candidate_of);
 }
 
 Result<std::vector<PlaceRow>> read_place_table(const std::filesystem::path& file) {
-  std::vector<PlaceRow> rows;
-  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
-    PlaceRow row;
-    const auto stamp = cells.time_ns("timestamp_s");
-    if (!stamp) return tl::unexpected(stamp.error());
-    row.timestamp_ns = *stamp;
-    const std::array<std::pair<const char*, double*>, 3> numbers = {
-        {{"blur_px", &row.blur_px}, {"candidates", &row.candidates}, {"accepted", &row.accepted}}};
-    for (const auto& [name, value] : numbers) {
-      const auto number = needed_number(cells, name);
-      if (!number) return tl::unexpected(number.error());
-      *value = *number;
-    }
-    rows.push_back(row);
-    return {};
-  });
-  if (!done) return tl::unexpected(done.error());
-  return rows;
+  return read_named_rows(file, place_of);
 }
 
 }  // namespace fusebench::run_files

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -36,5 +37,17 @@ class NamedRow {
 /// row).
 [[nodiscard]] Result<void> for_each_named_row(const std::filesystem::path& file,
                                               const std::function<Result<void>(const NamedRow&)>& row);
+
+/// All rows of a table, each as row_of makes it. Errors: those of for_each_named_row().
+template <class Row>
+[[nodiscard]] Result<std::vector<Row>> read_named_rows(const std::filesystem::path& file,
+                                                       Result<Row> (*row_of)(const NamedRow&)) {
+  std::vector<Row> rows;
+  const auto done = for_each_named_row(file, [&](const NamedRow& cells) {
+    return row_of(cells).map([&](Row row) { rows.push_back(std::move(row)); });
+  });
+  if (!done) return tl::unexpected(done.error());
+  return rows;
+}
 
 }  // namespace fusebench::run_files

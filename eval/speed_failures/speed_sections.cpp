@@ -67,12 +67,9 @@ std::vector<page::PageSection> FailureSections::sections() const {
     table.rows.push_back(std::move(row));
   }
   const std::string text =
-      "Frames of all recordings that are drawn below, by the fastest turn of the true camera in the second "
-      "before. Lost: without "
-      "a pose; undetected: with one whose motion over that second is off by more than 5 cm or 3 degrees. "
-      "Bins of "
-      "few "
-      "frames say little.";
+      "Frames of all recordings below, by the largest angular speed of the ground truth in the second "
+      "before. Lost: without a pose; undetected: with a pose whose motion over that second has an error of "
+      "more than 5 cm or 3 degrees. Bins with few frames are unreliable.";
   std::vector<page::Chart> charts{std::move(chart)};
   return {{"Failures by angular speed", text, std::move(charts)},
           {"The same in numbers", "", std::move(table), 3}};

@@ -29,13 +29,6 @@ struct CriterionTable {
   std::vector<std::string> against;
 };
 
-template <class T>
-Result<void> store(Result<T> value, auto& target) {
-  if (!value) return tl::unexpected(value.error());
-  target = std::move(*value);
-  return {};
-}
-
 template <class Choice, std::size_t N>
 Result<void> store_choice(const config::TomlEntry& entry,
                           const std::array<std::pair<std::string_view, Choice>, N>& choices, Choice& target) {
@@ -48,16 +41,6 @@ Result<void> store_choice(const config::TomlEntry& entry,
     return {};
   }
   return wrong_entry(entry, fmt::format("one of {}", fmt::join(names, ", ")));
-}
-
-Result<void> check_variants(const config::TomlEntry& entry, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    const auto variant = config::find_variant(name);
-    if (!variant)
-      return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, variant.error().message),
-                  variant.error().hint);
-  }
-  return {};
 }
 
 Result<void> check_metrics(const config::TomlEntry& entry, const std::vector<std::string>& names) {

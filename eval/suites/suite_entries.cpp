@@ -93,13 +93,18 @@ Result<std::vector<std::string>> names_entry(const config::TomlEntry& entry, boo
 Result<std::vector<std::string>> variants_entry(const config::TomlEntry& entry) {
   auto list = names_entry(entry);
   if (!list) return list;
-  for (const std::string& name : *list) {
+  if (auto known = check_variants(entry, *list); !known) return tl::unexpected(known.error());
+  return list;
+}
+
+Result<void> check_variants(const config::TomlEntry& entry, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
     if (const auto variant = config::find_variant(name); !variant) {
       return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, variant.error().message),
                   variant.error().hint);
     }
   }
-  return list;
+  return {};
 }
 
 const config::TomlEntry* EntryTable::find(std::string_view key) const {

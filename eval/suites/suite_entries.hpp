@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -42,6 +43,17 @@ template <class T>
                                                            bool one_allowed = false);
 /// The same of variants.
 [[nodiscard]] Result<std::vector<std::string>> variants_entry(const config::TomlEntry& entry);
+
+/// Error configuration at the entry for a name that is no variant.
+[[nodiscard]] Result<void> check_variants(const config::TomlEntry& entry,
+                                          const std::vector<std::string>& names);
+/// Stores the value, or returns its error.
+template <class T, class Target>
+[[nodiscard]] Result<void> store(Result<T> value, Target& target) {
+  if (!value) return tl::unexpected(value.error());
+  target = Target(std::move(*value));
+  return {};
+}
 
 /// One [[table]] of a list of them.
 struct EntryTable {

@@ -68,11 +68,6 @@ Result<void> read_count(const config::TomlEntry& entry, int most, int& target) {
 }
 
 Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
-  const auto store = [](auto value, auto& target) -> Result<void> {
-    if (!value) return tl::unexpected(value.error());
-    target = std::move(*value);
-    return {};
-  };
   if (entry.key == "name") return store(folder_name_entry(entry), suite.name);
   if (entry.key == "all") return store(flag_entry(entry), suite.all);
   if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
@@ -103,9 +98,7 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
   SuiteRecording recording;
   for (const config::TomlEntry& entry : table.entries) {
     if (entry.key == "variants") {
-      auto list = variants_entry(entry);
-      if (!list) return tl::unexpected(list.error());
-      recording.variants = std::move(*list);
+      if (auto read = store(variants_entry(entry), recording.variants); !read) return read;
       continue;
     }
     const std::array<std::pair<std::string_view, std::string*>, 4> texts = {{{"name", &recording.name},
@@ -115,9 +108,7 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
     const auto* const target =
         std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.first == entry.key; });
     if (target == texts.end()) return unknown_key(entry.place, entry.key, kRecordingKeys, "a recording");
-    auto text = text_entry(entry);
-    if (!text) return tl::unexpected(text.error());
-    *target->second = std::move(*text);
+    if (auto read = store(text_entry(entry), *target->second); !read) return read;
     if (!is_split(recording.split)) return wrong_entry(entry, "\"tuning\" or \"held-out\"");
   }
   if (recording.name.empty())
@@ -130,20 +121,15 @@ Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   for (const EntryTable& table : entry_tables(document, "recordings")) {
     if (auto read = read_recording(table, suite); !read) return read;
   }
-  auto simulations = read_simulations(entry_tables(document, "simulations"), suite.variants);
-  if (!simulations) return tl::unexpected(simulations.error());
-  suite.simulations = std::move(*simulations);
-  auto sweeps = read_sweeps(entry_tables(document, "sweep"));
-  if (!sweeps) return tl::unexpected(sweeps.error());
-  suite.sweeps = std::move(*sweeps);
-  auto exclusions = read_exclusions(entry_tables(document, "exclude"));
-  if (!exclusions) return tl::unexpected(exclusions.error());
-  suite.exclusions = std::move(*exclusions);
-  auto criteria =
-      read_criteria(entry_tables(document, "criteria"), suite.variants.empty() ? "" : suite.variants.front());
-  if (!criteria) return tl::unexpected(criteria.error());
-  suite.criteria = std::move(*criteria);
-  return {};
+  if (auto read =
+          store(read_simulations(entry_tables(document, "simulations"), suite.variants), suite.simulations);
+      !read)
+    return read;
+  if (auto read = store(read_sweeps(entry_tables(document, "sweep")), suite.sweeps); !read) return read;
+  if (auto read = store(read_exclusions(entry_tables(document, "exclude")), suite.exclusions); !read)
+    return read;
+  const std::string reference = suite.variants.empty() ? "" : suite.variants.front();
+  return store(read_criteria(entry_tables(document, "criteria"), reference), suite.criteria);
 }
 
 /// A criterion on a group that no recording is in would never decide anything.

@@ -119,14 +119,6 @@ Result<void> refused(const config::TomlEntry& entry, const Error& error) {
               fmt::format("{}: {}", entry.place, error.message), error.hint);
 }
 
-/// Hands the value on, or says where it stands and what is wrong with it.
-template <class T, class Target>
-Result<void> store(const Result<T>& value, Target& target) {
-  if (!value) return tl::unexpected(value.error());
-  target = Target(*value);
-  return {};
-}
-
 template <class T>
 Result<void> store_parsed(const config::TomlEntry& entry, Result<T> (*parse)(std::string_view), T& target) {
   const auto text = text_entry(entry);

@@ -41,12 +41,6 @@ std::vector<std::vector<std::size_t>> parts_of(const LatexTable& table, std::siz
   return parts;
 }
 
-text::TableCells chosen(const text::TableCells& cells, const std::vector<std::size_t>& columns) {
-  text::TableCells result;
-  for (const std::size_t column : columns) result.push_back(cells[column]);
-  return result;
-}
-
 /// Lines of \\scriptsize on a page, with a margin for the styles of journals.
 std::size_t lines_of_page(const LatexLayout& layout) { return layout.rotated ? 42 : 70; }
 
@@ -74,15 +68,12 @@ std::string tabular(const LatexTable& table, std::span<const LatexTable::Line> l
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < table.text_columns; ++column) columns.push_back(column);
   columns.insert(columns.end(), numbers.begin(), numbers.end());
-  std::string text = text::latex_begin(chosen(table.heading, columns), table.text_columns);
+  std::string text = text::latex_begin(chosen({table.heading}, columns).cells, table.text_columns);
   text.erase(0, text.find('\n') + 1);  // the packages are named once, for all parts
   for (const LatexTable::Line& line : lines) {
-    std::vector<std::size_t> bold;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (std::ranges::find(line.bold, columns[i]) != line.bold.end()) bold.push_back(i);
-    }
     if (line.rule_before && &line != lines.data()) text += "\\midrule\n";
-    text += text::latex_line(chosen(line.cells, columns), bold);
+    const LatexTable::Line part = chosen(line, columns);
+    text += text::latex_line(part.cells, part.bold);
   }
   return "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n" + text +
          std::string(text::kLatexEnd) + "}\n";
@@ -96,6 +87,15 @@ std::string footnotes_of(const LatexTable& table) {
 }
 
 }  // namespace
+
+LatexTable::Line chosen(const LatexTable::Line& line, const std::vector<std::size_t>& columns) {
+  LatexTable::Line result{{}, {}, line.rule_before};
+  for (const std::size_t column : columns) {
+    if (std::ranges::find(line.bold, column) != line.bold.end()) result.bold.push_back(result.cells.size());
+    result.cells.push_back(line.cells[column]);
+  }
+  return result;
+}
 
 std::string latex_table(const LatexTable& table, const LatexLayout& layout) {
   const std::string environment =

@@ -31,6 +31,9 @@ struct LatexTable {
   std::vector<std::string> footnotes;  ///< printed below it
 };
 
+/// The cells of these columns, and which of them are bold.
+[[nodiscard]] LatexTable::Line chosen(const LatexTable::Line& line, const std::vector<std::size_t>& columns);
+
 /// A table, table* or sidewaystable with caption and label, needing the packages that its first line names.
 /// What is too wide is split: the columns of numbers over several tabulars, one below the other. Each is
 /// scaled down where its letters are wider than was thought. What is too long for a page becomes several

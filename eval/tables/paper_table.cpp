@@ -168,7 +168,7 @@ std::string markdown(const PaperTable& table, std::size_t width) {
 
 std::string latex(const PaperTable& table, const LatexLayout& layout) {
   LatexTable latex;
-  latex.caption = fmt::format("{}: published numbers, and what was run here.", table.of.title);
+  latex.caption = fmt::format("{}: published numbers and results of this program.", table.of.title);
   latex.label = table.of.name;
   std::ranges::replace(latex.label, '_', '-');
   latex.heading = heading_of(table);
@@ -249,26 +249,18 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
   for (const std::string& name : synthetic) add_alone("IMU made from the truth", name, true);
   if (!synthetic.empty()) {
     table.notes.emplace_back(
-        "IMU made from the truth: such runs know the answer, and compare variants with each other only. They "
-        "stand in rows of their own, and beside no published number.");
+        "IMU made from the ground truth: these runs use information of the reference, so they compare "
+        "variants with each other only. They have rows of their own without published numbers.");
   }
   return table;
 }
 
 std::string render_paper_table(const PaperTable& table, TableFormat format, const LatexLayout& layout,
                                std::size_t width) {
-  switch (format) {
-    case TableFormat::markdown:
-      return markdown(table, width);
-    case TableFormat::csv:
-    case TableFormat::csv_long:
-      return csv(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-  }
-  return {};
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv || format == TableFormat::csv_long) return csv(table);
+  return markdown(table, width);
 }
 
 }  // namespace fusebench::tables

@@ -266,20 +266,15 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   }
   table.footer = {
       "Medians over the runs of a system (repetitions and replicates) with their ranges; one number where "
-      "all are "
-      "the same. Sensitivity: range / median of the ATE, how much of it is chance. Poses: online "
-      "as each was known when its frame came, final as all were known at the end; published: numbers from "
-      "elsewhere (see configs/paper), by protocols of their own, and not run here. KEY=VALUE: edited "
-      "options; "
-      "#: version of a program or configuration of a variant; [A:B]: frames, where rows of one system differ "
-      "in them.",
+      "all are equal. Sensitivity: range / median of the ATE, the share that is chance. Poses: online: "
+      "estimated when the frame arrived; final: estimated at the end; published: numbers of publications "
+      "(configs/paper) by their own protocols. KEY=VALUE: edited options; #: version of a program or "
+      "configuration of a variant; [A:B]: frames, where rows of one system differ in them.",
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
-      "tracked. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true "
-      "surface; a "
-      "run has one, at its final poses where it has these. Undetected: frames with a wrong pose. CPU: user "
-      "and "
-      "system time of all threads by the frames of the recording; of an external program everything it "
-      "does."};
+      "tracked. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the ground-truth "
+      "surface, at the final poses if there are any. Undetected: frames with a wrong pose. CPU: user and "
+      "system time of all threads by the frames of the recording; of an external program for its whole "
+      "process."};
   return table;
 }
 
@@ -301,17 +296,9 @@ std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& ta
 
 std::string render_systems_table(const SystemsTable& table, TableFormat format, const LatexLayout& layout,
                                  std::size_t width) {
-  switch (format) {
-    case TableFormat::csv:
-    case TableFormat::csv_long:
-      return csv(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-    case TableFormat::markdown:
-      break;
-  }
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv || format == TableFormat::csv_long) return csv(table);
   return markdown(table, width);
 }
 

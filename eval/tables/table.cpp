@@ -196,10 +196,8 @@ std::vector<std::string> footer_of(const ResultTable& table) {
   if (has_replicates(table)) {
     footer.push_back(
         "A [B, C]: median and range over replicates, runs from initial poses that differ by noise far below "
-        "what "
-        "sensors resolve. sensitivity: range / median of the ATE, how much of it is chance. AIE common is of "
-        "the "
-        "first replicate.");
+        "what sensors resolve. sensitivity: range / median of the ATE, the share that is chance. AIE common "
+        "is of the first replicate.");
   }
   if (!table.means.empty()) {
     footer.push_back(

@@ -120,20 +120,8 @@ void keep_columns(const std::vector<std::string>& metrics, LatexTable& table) {
     if (is_name || (place < keys.size() && std::ranges::find(metrics, keys[place]) != metrics.end()))
       kept.push_back(column);
   }
-  const auto chosen = [&](const Cells& cells) {
-    Cells result;
-    for (const std::size_t column : kept) result.push_back(cells[column]);
-    return result;
-  };
-  table.heading = chosen(table.heading);
-  for (LatexTable::Line& line : table.lines) {
-    std::vector<std::size_t> bold;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      if (std::ranges::find(line.bold, kept[i]) != line.bold.end()) bold.push_back(i);
-    }
-    line.cells = chosen(line.cells);
-    line.bold = std::move(bold);
-  }
+  table.heading = chosen({table.heading}, kept).cells;
+  for (LatexTable::Line& line : table.lines) line = chosen(line, kept);
 }
 
 std::string latex(const ResultTable& table, const LatexLayout& layout) {
@@ -333,19 +321,11 @@ Result<TableFormat> parse_table_format(std::string_view text) {
 
 std::string render_table(const ResultTable& table, TableFormat format, const LatexLayout& layout,
                          std::size_t width) {
-  switch (format) {
-    case TableFormat::markdown:
-      return markdown(table, width);
-    case TableFormat::csv:
-      return csv(table);
-    case TableFormat::csv_long:
-      return csv_long(table);
-    case TableFormat::json:
-      return json(table);
-    case TableFormat::latex:
-      return latex(table, layout);
-  }
-  return {};
+  if (format == TableFormat::json) return json(table);
+  if (format == TableFormat::latex) return latex(table, layout);
+  if (format == TableFormat::csv) return csv(table);
+  if (format == TableFormat::csv_long) return csv_long(table);
+  return markdown(table, width);
 }
 
 }  // namespace fusebench::tables

@@ -19,6 +19,8 @@ namespace {
 
 // Of the largest singular value: an absolute limit alone lets long oblique lines pass through rounding.
 constexpr double kRankTolerance = 1e-9;
+// Of a quaternion (w, z) that turns about z: less is rounding of orientations with four decimals.
+constexpr double kLeastYawNorm = 1e-3;
 // A motion is observable if it is more than so many times what rounding can give.
 constexpr double kRoundings = 2;
 
@@ -92,9 +94,11 @@ double rounding_of_products(const Side& reference, double reference_spread, cons
 tl::unexpected<Error> undetermined(const std::string& why, std::string_view remedy = "") {
   return fail(
       ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
-      fmt::format("{}`fusebench eval` with --align origin or --align none needs no motion; alignment of "
-                  "positions needs three that are not on one line",
-                  remedy));
+      fmt::format(
+          "{}--align origin or --align none of `fusebench eval`, in place of -a, -s, --align_origin or "
+          "another --align, needs no motion; rotation and scale from positions need three that are not on "
+          "one line",
+          remedy));
 }
 
 /// Length of the diagonal of the box around the positions.
@@ -150,8 +154,9 @@ Result<Similarity> align_yaw(std::span<const SE3> reference_poses, std::span<con
   const double sine = H(1, 0) - H(0, 1);
   const Matrix3x2d horizontal = Matrix3d::Identity().leftCols<2>();
   // Two products for each pose, with errors of two coordinates.
+  // Of a quaternion (w, x, y, z), hypot(cosine, sine) = 2 (w^2 + z^2).
   const double from_rounding = by_orientation
-                                   ? kRankTolerance
+                                   ? 2 * kLeastYawNorm * kLeastYawNorm
                                    : kRoundings * std::numbers::sqrt2 *
                                          rounding_of_products(reference, reference.spread(horizontal),
                                                               estimate, estimate.spread(horizontal));
@@ -166,7 +171,10 @@ Result<Similarity> align_yaw(std::span<const SE3> reference_poses, std::span<con
           "the rotation about z is arbitrary",
           side->name, side->offsets.size(), extent_m(*side, horizontal)));
     }
-    return undetermined("the reference and the estimate have no unique best rotation about z");
+    return undetermined(
+        by_orientation
+            ? "the z axes of the only pair of poses are opposite, so that the rotation about z is arbitrary"
+            : "the reference and the estimate have no unique best rotation about z");
   }
   return between_means(reference, estimate, 1, so3_exp(std::atan2(sine, cosine) * Vector3d::UnitZ()));
 }

@@ -64,7 +64,8 @@ struct AlignmentRequest {
 /// Errors data_corrupt: no poses, or motion that does not determine the alignment.
 ///   se3, sim3, scale   fewer than three positions, or positions of either side in a point or on a line: the
 ///                      rotation about the line is arbitrary, and so is the scale of a point
-///   yaw                positions of either side on a vertical line
+///   yaw                positions of either side on a vertical line; of a single pair of poses, z axes that
+///                      are opposite within 0.1 degrees
 ///   origin, none       need no motion (origin with scale_origin: as scale)
 ///
 /// With H = sum_i (g_i - g)(p_i - p)^T = U S V^T and d = det(U) det(V), a rotation about the worst axis has

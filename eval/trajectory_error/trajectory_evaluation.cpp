@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "core/trajectory/trajectory.hpp"
+#include "core/trajectory/trajectory_extent.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
 #include "eval/trajectory_error/segment_errors.hpp"
+#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -242,6 +247,20 @@ Result<TrajectoryEvaluation> of_segments(const Trajectory& reference,
   return result;
 }
 
+std::optional<double> time_coverage(const Trajectory& reference, const Trajectory& estimate,
+                                    const trajectory_files::AssociationOptions& association) {
+  using trajectory_files::AssociationRule;
+  if (association.rule == AssociationRule::index || association.rule == AssociationRule::number)
+    return std::nullopt;
+  Trajectory whole;
+  std::ranges::copy_if(reference, std::back_inserter(whole), [&](const StampedPose& pose) {
+    const double time_s = trajectory_files::stamp_seconds(pose.timestamp_ns);
+    return time_s >= association.start_s && time_s <= association.end_s;
+  });
+  return trajectory::covered_share_of_time(
+      whole, trajectory::with_clock_offset(estimate, trajectory_files::nanoseconds(association.offset_s)));
+}
+
 Result<TrajectoryEvaluation> evaluate_thinned(const Trajectory& reference, const Trajectory& estimate,
                                               const TrajectoryRequest& request) {
   const bool relative = request.metric == TrajectoryMetric::rpe;
@@ -290,6 +309,7 @@ Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Traject
   if (!result) return result;
   result->reference_poses = reference.size();
   result->estimate_poses = estimate.size();
+  result->time_coverage = time_coverage(reference, estimate, request.association);
   return result;
 }
 

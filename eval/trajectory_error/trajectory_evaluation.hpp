@@ -48,9 +48,12 @@ struct TrajectoryEvaluation {
   TrajectoryRequest request;
   std::size_t reference_poses = 0;
   std::size_t estimate_poses = 0;
-  std::size_t pairs = 0;            ///< associated poses; of TUM's relative error, motions with ground truth
-  std::size_t possible = 0;         ///< that there could have been
-  double coverage = 0;              ///< pairs / possible
+  std::size_t pairs = 0;     ///< associated poses; of TUM's relative error, motions with ground truth
+  std::size_t possible = 0;  ///< that there could have been
+  double coverage = 0;       ///< pairs / possible
+  /// Share of the reference's time that the estimate covers (trajectory::covered_share_of_time); a tracker
+  /// that stops early has a coverage of 1, but a small share here. Nothing of poses without stamps.
+  std::optional<double> time_coverage;
   std::size_t with_itself = 0;      ///< of TUM's relative error: see RpeResult
   Similarity alignment;             ///< reference from estimate
   std::vector<ErrorSeries> series;  ///< the first is the protocol's own number

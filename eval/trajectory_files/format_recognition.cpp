@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/base/printable.hpp"
-#include "core/io/row_text.hpp"
 #include "core/io/stamp_unit.hpp"
 
 namespace fusebench::trajectory_files {
@@ -31,31 +29,6 @@ constexpr std::string_view kEurocNames = "timestamp px py pz qw qx qy qz ...";
 constexpr std::string_view kOpenvinsNames =
     "timestamp tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 Pt12 Pt13 Pt22 Pt23 Pt33";
 
-double number_in(const HeadRow& row, std::size_t column) {
-  return io::parse_number(row.fields[column]).value_or(std::nan(""));
-}
-
-double norm_of(const HeadRow& row, std::size_t first, std::size_t count) {
-  double sum = 0;
-  for (std::size_t i = first; i < first + count; ++i) sum += number_in(row, i) * number_in(row, i);
-  return std::sqrt(sum);
-}
-
-bool is_one(double norm) {
-  constexpr double kTolerance = 1e-2;
-  return std::abs(norm - 1) < kTolerance;
-}
-
-/// Stamps and unit quaternions, or rows of lost frames.
-bool could_be_tum(const PoseHead& head) {
-  return std::ranges::all_of(head.rows, [](const HeadRow& row) {
-    if (row.fields.size() < kTumColumns || std::isnan(number_in(row, 0))) return false;
-    const bool nan = std::any_of(row.fields.begin() + 1, row.fields.begin() + kTumColumns, io::is_nan);
-    const double norm = norm_of(row, 4, 4);
-    return nan || norm == 0 || is_one(norm);
-  });
-}
-
 /// Integers of nanoseconds with commas between the columns.
 bool is_euroc(const PoseHead& head) {
   constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
@@ -64,39 +37,29 @@ bool is_euroc(const PoseHead& head) {
          stamp.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Rows of 3x4 poses from column `first` on.
-bool has_rotations(const PoseHead& head, std::size_t first) {
-  return std::ranges::all_of(head.rows, [first](const HeadRow& row) {
-    return row.fields.size() >= first + kKittiColumns && is_one(norm_of(row, first, 3)) &&
-           is_one(norm_of(row, first + 4, 3)) && is_one(norm_of(row, first + 8, 3));
-  });
-}
-
 /// Entries of rotations are within -1 and 1, and stamps soon are not.
 bool has_stamps(const PoseHead& head) {
   constexpr double kMoreThanAnEntry = 2;
-  return std::ranges::any_of(head.rows,
-                             [](const HeadRow& row) { return number_in(row, 0) > kMoreThanAnEntry; });
+  return std::ranges::any_of(head.rows, [](const HeadRow& row) { return row.number(0) > kMoreThanAnEntry; });
 }
 
-bool ends_with_last_row(const HeadRow& row) {
-  return row.fields.size() == kWholePoseColumns && number_in(row, 12) == 0 && number_in(row, 13) == 0 &&
-         number_in(row, 14) == 0 && number_in(row, 15) == 1;
-}
-
-Result<TrajectoryFormat> format_by_columns(const PoseHead& head, const std::filesystem::path& file) {
+Result<TrajectoryFormat> format_by_columns(const PoseHead& head, const std::optional<MatrixLayout>& matrices,
+                                           const std::filesystem::path& file) {
   const std::size_t columns = head.columns();
   if (columns == kLogHeader) return TrajectoryFormat::log;
+  const bool has_last_row = columns == kWholePoseColumns && matrices && !matrices->is_transposed;
+  if (has_last_row || (columns > kKittiColumns && matrices && matrices->is_surely_one))
+    return TrajectoryFormat::kitti;
   if (columns >= kTumColumns && is_euroc(head)) return TrajectoryFormat::euroc;
   if (columns == kTumColumns) return TrajectoryFormat::tum;
   if (columns == kOpenvinsColumns) return TrajectoryFormat::openvins;
   if (columns == kEurocColumns && head.commas()) return TrajectoryFormat::euroc;
-  if (columns == kWholePoseColumns && ends_with_last_row(head.rows.front())) return TrajectoryFormat::kitti;
   // A stamp and the matrix of a pose are no quaternion with more columns.
-  const bool other_tum = columns > kTumColumns && could_be_tum(head) && !has_rotations(head, 1);
+  const bool other_tum = columns > kTumColumns && !has_rotations(head.rows, 1) &&
+                         (head.fits(trajectory::kTumColumns) || head.has_split_stamps());
   if (columns == kKittiColumns)
-    return other_tum && has_stamps(head) && !has_rotations(head, 0) ? TrajectoryFormat::tum
-                                                                    : TrajectoryFormat::kitti;
+    return other_tum && has_stamps(head) && !has_rotations(head.rows, 0) ? TrajectoryFormat::tum
+                                                                         : TrajectoryFormat::kitti;
   if (other_tum) return TrajectoryFormat::tum;
   const bool semicolons = head.rows.front().fields.front().find(';') != std::string::npos;
   const std::string hint = semicolons ? "replace the semicolons between the numbers by commas or blanks"
@@ -106,8 +69,8 @@ Result<TrajectoryFormat> format_by_columns(const PoseHead& head, const std::file
                                : "`--format` names the format if the first row does not";
   return fail(
       ErrorCode::data_corrupt,
-      fmt::format("{}:{}: {} columns are no trajectory (tum has 8 or more, kitti 12 or 16, euroc 8 or "
-                  "more, log 3, openvins 20)",
+      fmt::format("{}:{}: {} columns are no trajectory (tum has 8 or more, kitti 12 or 16, or one more with "
+                  "a stamp or number, euroc 8 or more, log 3, openvins 20)",
                   file.string(), head.rows.front().line, columns),
       hint);
 }
@@ -131,8 +94,29 @@ PoseLayout layout_for(TrajectoryFormat format, std::size_t columns) {
   return layout;
 }
 
-RecognisedFormat without_names(TrajectoryFormat format, std::string source, const PoseHead& head) {
-  return {format, std::move(source), layout_for(format, head.columns()), format == TrajectoryFormat::euroc};
+RecognisedFormat without_names(TrajectoryFormat format, std::string source, const PoseHead& head,
+                               const std::optional<MatrixLayout>& matrices, const std::filesystem::path& file,
+                               std::vector<std::string>& warnings) {
+  RecognisedFormat found{format, std::move(source), layout_for(format, head.columns()), {}, false};
+  found.needs_commas = format == TrajectoryFormat::euroc;
+  if (format == TrajectoryFormat::kitti) found.matrices = matrices.value_or(MatrixLayout{});
+  if (format == TrajectoryFormat::kitti) found.source += found.matrices.described();
+  if (format == TrajectoryFormat::tum)
+    found.layout = trajectory::layout_of(head, std::move(found.layout), file, warnings);
+  return found;
+}
+
+/// Of a format of stamps and quaternions that is given for matrices.
+Result<void> check_no_matrices(const PoseHead& head, TrajectoryFormat given,
+                               const std::optional<MatrixLayout>& matrices,
+                               const std::filesystem::path& file) {
+  const bool of_quaternions = given != TrajectoryFormat::kitti && given != TrajectoryFormat::log;
+  if (!of_quaternions || !matrices || !matrices->is_surely_one || head.fits(trajectory::kTumColumns))
+    return {};
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}:{}: the {} columns are the matrix of a pose, and not {}", file.string(),
+                          head.rows.front().line, head.columns(), to_string(given)),
+              fmt::format("say kitti in place of {}", to_string(given)));
 }
 
 /// Covariances have no place in the names of a pose: their columns are those of the format.
@@ -172,6 +156,10 @@ Result<RecognisedFormat> recognise_format(const PoseHead& head, const Trajectory
                                           const std::filesystem::path& file,
                                           std::vector<std::string>& warnings) {
   if (head.named && !head.rows.empty()) return by_names(head, reading, file, warnings);
+  const auto matrices = matrix_layout(head, reading.stamp_unit.has_value());
+  const auto recognised = [&](TrajectoryFormat format, std::string source) {
+    return without_names(format, std::move(source), head, matrices, file, warnings);
+  };
   const bool may_be_tum = reading.tum_without_commas && !head.rows.empty() && !head.commas();
   if (reading.format && !may_be_tum) {
     // TUM text has as many columns, but w last: read as these it gives poses like any others.
@@ -183,12 +171,14 @@ Result<RecognisedFormat> recognise_format(const PoseHead& head, const Trajectory
           "a timestamp in seconds, tx ty tz, qx qy qz qw between blanks is TUM text: say tum in place "
           "of euroc");
     }
-    return without_names(*reading.format, "as given", head);
+    if (auto checked = check_no_matrices(head, *reading.format, matrices, file); !checked)
+      return tl::unexpected(checked.error());
+    return recognised(*reading.format, "as given");
   }
-  if (head.rows.empty()) return without_names(TrajectoryFormat::tum, "assumed", head);
-  const auto format = format_by_columns(head, file);
+  if (head.rows.empty()) return recognised(TrajectoryFormat::tum, "assumed");
+  const auto format = format_by_columns(head, matrices, file);
   if (!format) return tl::unexpected(format.error());
-  return without_names(*format, "by its columns", head);
+  return recognised(*format, "by its columns");
 }
 
 }  // namespace fusebench::trajectory_files

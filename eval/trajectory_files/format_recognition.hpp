@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/trajectory/pose_head.hpp"
 #include "core/trajectory/pose_table.hpp"
+#include "eval/trajectory_files/matrix_rows.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::trajectory_files {
@@ -16,12 +17,13 @@ struct RecognisedFormat {
   TrajectoryFormat format = TrajectoryFormat::tum;
   std::string source;             ///< "names in line 1", "as given", "by its columns"
   trajectory::PoseLayout layout;  ///< of tum, euroc and openvins
+  MatrixLayout matrices = {};     ///< of kitti
   bool needs_commas = false;      ///< euroc without names: between blanks, rows are taken for TUM text
 };
 
 /// Names in the file go before the format that is given, with a warning if they contradict it, and that
-/// before the columns of the first rows. Error data_corrupt: columns that fit no format, or (euroc) no
-/// commas.
+/// before the columns of the first rows. Error data_corrupt: columns that fit no format, matrices given as
+/// another format, or (euroc) no commas.
 [[nodiscard]] Result<RecognisedFormat> recognise_format(const trajectory::PoseHead& head,
                                                         const TrajectoryReading& reading,
                                                         const std::filesystem::path& file,

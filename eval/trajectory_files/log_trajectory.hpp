@@ -11,10 +11,10 @@
 
 namespace fusebench::trajectory_files {
 
-/// The number of a frame is its stamp in nanoseconds; numbers rise. Rotations are made orthonormal; a warning
-/// says how far off they were. Errors name file:line: data_missing; data_corrupt for lines that are none of
-/// these, numbers that do not rise, a matrix that is no rotation to a hundredth or whose last row is not 0 0
-/// 0 1, and a file that ends within a pose.
+/// The number of a frame is its stamp in nanoseconds; numbers rise. Rotations are made orthonormal, and poses
+/// of lost frames are left out; warnings say how far off rotations were, and count lost frames. Errors name
+/// file:line: data_missing; data_corrupt for lines that are none of these, numbers that do not rise, a matrix
+/// that is no rotation to a hundredth or whose last row is not 0 0 0 1, and a file that ends within a pose.
 [[nodiscard]] Result<Trajectory> read_log_trajectory(const std::filesystem::path& file,
                                                      std::vector<std::string>& warnings);
 

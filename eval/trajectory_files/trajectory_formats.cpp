@@ -9,13 +9,12 @@
 #include <utility>
 
 #include "core/io/input_file.hpp"
-#include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
 #include "core/trajectory/pose_head.hpp"
 #include "core/trajectory/pose_table.hpp"
 #include "eval/trajectory_files/format_recognition.hpp"
 #include "eval/trajectory_files/log_trajectory.hpp"
-#include "eval/trajectory_files/nearest_rotation.hpp"
+#include "eval/trajectory_files/matrix_rows.hpp"
 
 namespace fusebench::trajectory_files {
 
@@ -94,56 +93,6 @@ Result<LoadedTrajectory> read_table(const std::filesystem::path& file, const Rec
   return loaded;
 }
 
-constexpr std::size_t kUpperPart = 12;  // numbers of the upper 3x4 of a pose
-
-/// Of a row with a whole 4x4 pose, as Replica's traj.txt.
-Result<void> check_last_row(const io::TextTable& table) {
-  if (!table.has(kUpperPart)) return {};
-  constexpr double kTolerance = 1e-6;
-  Eigen::RowVector4d last;
-  if (auto read = table.numbers(kUpperPart, {last.data(), 4}); !read) return read;
-  if ((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kTolerance) return {};
-  return table.fail_here(fmt::format("the last row of the pose is {:g} {:g} {:g} {:g} (expected 0 0 0 1)",
-                                     last[0], last[1], last[2], last[3]),
-                         "a row is a pose as 3x4 or 4x4 numbers, row by row");
-}
-
-Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  constexpr double kNoRotation = 1e-2;
-  constexpr double kRounding = 1e-5;  // KITTI's files have six digits
-  Trajectory poses;
-  double largest = 0;
-  int largest_line = 0;
-  const Result<void> done = io::for_each_row(
-      file, "r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz [m41 m42 m43 m44]",
-      [&](const io::TextTable& table) -> Result<void> {
-        if (auto last = check_last_row(table); !last) return last;
-        Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
-        if (auto read = table.numbers(0, {T.data(), kUpperPart}); !read) return read;
-        const NearestRotation rotation = nearest_rotation(T.leftCols<3>());
-        if (!(rotation.deviation < kNoRotation)) {
-          return table.fail_here(
-              fmt::format("the 3x3 part is no rotation (determinant {:g}, R^T R off identity by {:.2g})",
-                          T.leftCols<3>().determinant(), rotation.deviation),
-              "a row is the upper 3x4 of the pose, row by row");
-        }
-        if (auto within = trajectory::check_position(table, T.col(3)); !within) return within;
-        if (rotation.deviation > largest) {
-          largest = rotation.deviation;
-          largest_line = table.line();
-        }
-        poses.push_back({static_cast<std::int64_t>(poses.size()), {Quaterniond(rotation.R), T.col(3)}});
-        return {};
-      });
-  if (!done) return tl::unexpected(done.error());
-  if (largest > kRounding) {
-    warnings.push_back(
-        fmt::format("{}:{}: rotations are off orthonormal by up to {:.2g} (replaced by the nearest rotation)",
-                    file.string(), largest_line, largest));
-  }
-  return poses;
-}
-
 }  // namespace
 
 std::string_view to_string(TrajectoryFormat format) {
@@ -185,19 +134,24 @@ Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file, cons
   if (!head) return tl::unexpected(head.error());
   auto recognised = recognise_format(*head, reading, file, warnings);
   if (!recognised) return tl::unexpected(recognised.error());
-  const auto loaded = [&](Result<Trajectory> poses) -> Result<LoadedTrajectory> {
+  if (recognised->format == TrajectoryFormat::log) {
+    auto poses = read_log_trajectory(file, warnings);
     if (!poses) return tl::unexpected(poses.error());
-    return LoadedTrajectory{recognised->format, std::move(*poses), {}, recognised->source};
-  };
-  if (recognised->format == TrajectoryFormat::kitti) return loaded(read_kitti(file, warnings));
-  if (recognised->format == TrajectoryFormat::log) return loaded(read_log_trajectory(file, warnings));
+    return LoadedTrajectory{recognised->format, std::move(*poses), {}, recognised->source, PoseKey::number};
+  }
   trajectory::GivenUnit unit{reading.stamp_unit, reading.unit_of_this_file, {}};
   if (recognised->format == TrajectoryFormat::euroc) unit.usual = io::TimeUnit::nanoseconds;
-  recognised->layout.unit =
-      trajectory::stamp_unit_of(*head, recognised->layout.columns, unit, file, warnings);
-  auto table = read_table(file, *recognised, reading, warnings);
-  if (table) table->format_source = recognised->source;
-  return table;
+  const bool has_stamps =
+      recognised->format != TrajectoryFormat::kitti || recognised->matrices.key == PoseKey::stamp;
+  if (has_stamps)
+    recognised->layout.unit =
+        trajectory::stamp_unit_of(*head, recognised->layout.columns, unit, file, warnings);
+  auto loaded = recognised->format == TrajectoryFormat::kitti
+                    ? read_matrix_rows(file, recognised->matrices, recognised->layout.unit,
+                                       reading.duplicates, warnings)
+                    : read_table(file, *recognised, reading, warnings);
+  if (loaded) loaded->format_source = recognised->source;
+  return loaded;
 }
 
 }  // namespace fusebench::trajectory_files

@@ -16,7 +16,7 @@ namespace fusebench::trajectory_files {
 
 enum class TrajectoryFormat {
   tum,       ///< "timestamp tx ty tz qx qy qz qw" and more columns, seconds and metres
-  kitti,     ///< the upper 3x4 of a pose, or all 4x4, row by row; no stamps, poses go by their number
+  kitti,     ///< the upper 3x4 of a pose, or all 4x4, a pose a row (matrix_rows.hpp)
   euroc,     ///< "timestamp[ns],px,py,pz,qw,qx,qy,qz" and more columns, such as velocity and biases
   log,       ///< Redwood's and Open3D's: the number of a frame, then its 4x4 pose (log_trajectory.hpp)
   openvins,  ///< tum, then the upper triangles of the covariances of orientation and position (ov_eval)
@@ -31,14 +31,21 @@ struct PoseCovariance {
   Matrix3d position_m2 = Matrix3d::Zero();       ///< in the world of the estimate
 };
 
+/// By what the poses of a file are told apart.
+enum class PoseKey {
+  stamp,
+  number,  ///< each pose has that of its frame, and there may be gaps
+  order,   ///< poses are counted from 0 without gaps
+};
+
 struct LoadedTrajectory {
   TrajectoryFormat format = TrajectoryFormat::tum;
   Trajectory poses;  ///< without stamps, the number of a pose is its stamp in nanoseconds
   std::vector<PoseCovariance> covariances = {};  ///< one a pose with openvins; else none
   std::string format_source = {};                ///< "names in line 1", "as given", "by its columns"
-  [[nodiscard]] bool has_stamps() const { return format != TrajectoryFormat::kitti && !has_numbers(); }
-  /// Each pose says the number of its frame.
-  [[nodiscard]] bool has_numbers() const { return format == TrajectoryFormat::log; }
+  PoseKey key = PoseKey::stamp;
+  [[nodiscard]] bool has_stamps() const { return key == PoseKey::stamp; }
+  [[nodiscard]] bool has_numbers() const { return key == PoseKey::number; }
 };
 
 /// "s", "ms", "us" or "ns". Error usage for another name.

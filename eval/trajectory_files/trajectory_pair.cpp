@@ -86,6 +86,8 @@ std::string_view to_string(AssociationRule rule) {
       return "greedy";
     case AssociationRule::index:
       return "index";
+    case AssociationRule::number:
+      return "number";
     case AssociationRule::interpolated:
       return "interpolated";
     case AssociationRule::held:
@@ -134,12 +136,24 @@ Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajecto
       result.estimate = estimate;
       result.possible = reference.size();
       break;
+    case AssociationRule::number:
+      take(reference, estimate, trajectory::associate(stamps_of(reference), stamps_of(estimate), 1, 0),
+           result);
+      break;
     case AssociationRule::interpolated:
       interpolate_reference(reference, estimate, result);
       break;
     case AssociationRule::held:
       hold_estimate(reference, estimate, result);
       break;
+  }
+  if (result.size() == 0 && options.rule == AssociationRule::number) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("no pose of the estimate (frames {} to {}) has the number of one of the reference "
+                    "(frames {} to {})",
+                    estimate.front().timestamp_ns, estimate.back().timestamp_ns,
+                    reference.front().timestamp_ns, reference.back().timestamp_ns));
   }
   if (result.size() == 0) {
     return fail(

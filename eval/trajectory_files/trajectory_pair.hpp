@@ -16,7 +16,8 @@ namespace fusebench::trajectory_files {
 enum class AssociationRule {
   nearest,       ///< evo: see associate_nearest()
   greedy,        ///< TUM's associate.py, rpg: closest first, one to one, strictly within the limit
-  index,         ///< KITTI: by number; both have as many poses
+  index,         ///< KITTI: by order; both have as many poses
+  number,        ///< by the number of the frame, which is the stamp in nanoseconds; either may have gaps
   interpolated,  ///< the reference at the estimate's stamps, within its gaps of at most the limit
   held,          ///< ETH3D: an estimate for every stamp that is evaluated, interpolated, or the nearest end's
 };

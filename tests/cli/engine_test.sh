@@ -217,7 +217,7 @@ check_verbs() {
   "$binary" "${suite[@]}" --out nowhere --executor slurm >stdout 2>stderr && complain "slurm without a cluster succeeds"
   grep -qE 'there is no sbatch here|no Slurm controller answers' stderr || complain "slurm without a cluster: not said"
   [[ ! -e nowhere ]] || complain "slurm without a cluster: something is left"
-  says 2 'for --executor slurm' "${suite[@]}" --out nowhere --submit
+  says 2 'require --executor slurm' "${suite[@]}" --out nowhere --submit
   says 2 'is swept as well' "${suite[@]}" --out nowhere --set tsdf.voxel_m=0.02
 
   says 0 'ate_rmse_m|aie_grey' collect undisturbed
@@ -330,7 +330,7 @@ check_streams() {
   "$binary" list variants 2>stderr | true
   status=${PIPESTATUS[0]}
   if ((status != 0)); then ends 141 'a pipe whose reader has left'; fi
-  [[ ! -s stderr ]] || complain 'a pipe whose reader has left: something is said'
+  ! grep -qv '^\.\.\. ' stderr || complain 'a pipe whose reader has left: something is said'
 }
 
 case $group in

@@ -34,11 +34,13 @@ void check_depth(const std::filesystem::path& file) {
 
 void check_list(const std::filesystem::path& file) {
   int rows = 0;
-  const auto read = for_each_associated_row(file, [&](const TextTable&, const AssociatedRow& row) {
+  std::vector<std::string> warnings;
+  const auto use = [&](const TextTable&, const AssociatedRow& row) {
     ++rows;
     check(!row.color_stamp.empty() && !row.depth_stamp.empty(), "a row has both stamps");
     return Result<void>{};
-  });
+  };
+  const auto read = for_each_associated_row(file, use, warnings);
   if (!read) return check_error(read.error(), file);
   check(rows > 0, "a list has rows");
   check(first_associated_row(file).has_value(), "the first row is read as well");

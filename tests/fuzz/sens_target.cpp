@@ -27,14 +27,14 @@ void check_frames(const MemoryFile& file) {
       check(frame.error().code == ErrorCode::data_corrupt, "damage of a frame is an error of its own");
       return;
     }
-    const auto pose = poses_alone->next_pose();
+    const auto pose = poses_alone->next_parts();
     check(pose.has_value(), "what can be read with images can be read without");
     check(frame->has_value() == pose->has_value(), "both end together");
     if (!*frame) break;
     ++read;
     check((*frame)->T_world_camera.has_value() == (*pose)->T_world_camera.has_value(),
           "a frame has a pose or has none");
-    check((*frame)->color_timestamp_us == (*pose)->color_timestamp_us, "stamps are the same");
+    check((*frame)->color_timestamp_us == (*pose)->color_timestamp, "stamps are the same");
     check((*frame)->depth.width == with_images->header().depth.width_px, "depth has the size of the header");
   }
   check(read == with_images->header().frames, "a file has as many frames as it says");

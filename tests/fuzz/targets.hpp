@@ -19,7 +19,6 @@ void png(std::string_view bytes);
 void zr300(std::string_view bytes);
 void infinitam(std::string_view bytes);
 void icl(std::string_view bytes);
-void klg(std::string_view bytes);
 void sens(std::string_view bytes);
 void zip_archive(std::string_view bytes);
 void sensor_files(std::string_view bytes);
@@ -47,7 +46,6 @@ inline constexpr std::array kTargets = {
     Target{"zr300", zr300},
     Target{"infinitam", infinitam},
     Target{"icl", icl},
-    Target{"klg", klg},
     Target{"sens", sens},
     Target{"zip_archive", zip_archive},
     Target{"sensor_files", sensor_files},

@@ -23,6 +23,13 @@ const charts = drawn.filter((chart) => {
 const cells = [...document.querySelectorAll("td")].filter((cell) => getComputedStyle(cell).overflowWrap === "anywhere");
 return charts.concat(cells.map((cell) => cell.textContent));
 """
+# Models on paper: how many have a picture that is seen, and how many views are still drawn.
+MODELS_ON_PAPER = """
+const seen = (element) => element.getClientRects().length > 0;
+const pictures = [...document.querySelectorAll(".scene .stills img")];
+return [pictures.filter((picture) => seen(picture) && picture.naturalWidth > 100).length, pictures.length,
+  [...document.querySelectorAll(".scene canvas")].filter(seen).length];
+"""
 # Whether a table that is wider than its place has a sign of it, and keeps its first column when it is moved.
 MOVED_TABLE = """
 const box = [...document.querySelectorAll(".scroll")].find((other) => other.querySelector("th"));
@@ -70,6 +77,9 @@ def print_in_dark(reader):
     unreadable = driver.execute_script(UNREADABLE_ON_PAPER)
     if unreadable:
         reader.complain("these cannot be read on paper: " + ", ".join(unreadable[:5]))
+    shown, models, views = driver.execute_script(MODELS_ON_PAPER)
+    if models == 0 or shown < models or views > 0:
+        reader.complain(f"paper shows {shown} of {models} pictures of models and {views} views that turn")
     driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
     reader.scheme("light")
 

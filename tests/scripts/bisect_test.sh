@@ -24,11 +24,16 @@ cat >program <<'TEXT'
 printf '%s\n' "$*" >>"$KEPT"
 case $1 in
   bench)
-    [[ $(cat number) != broken ]] || exit 3
+    case $(cat number) in
+      broken) exit 2 ;;
+      absent) exit 3 ;;
+      full) exit 4 ;;
+    esac
     for ((i = 1; i <= $#; ++i)); do
       if [[ ${!i} == --out ]]; then next=$((i + 1)); out=${!next}; fi
     done
     mkdir -p "$out" && cp number "$out/"
+    if [[ $(cat number) == 3 ]]; then printf 'suite: 0 of 1 runs ok\n'; exit 4; fi
     ;;
   compare) (($(cat "$3/number") <= $(cat "$2/number"))) ;;
 esac
@@ -71,6 +76,9 @@ expect 0 1 "$tree/baseline" suite
 expect 1 2 "$tree/baseline" suite
 expect 125 uncompilable "$tree/baseline" suite
 expect 125 broken "$tree/baseline" suite
+expect 1 3 "$tree/baseline" suite
+expect 129 absent "$tree/baseline" suite
+expect 129 full "$tree/baseline" suite
 expect 129 1 "$tree/absent" suite
 expect 129 1 "$tree/baseline"
 expect 129 1 "$tree/baseline" suite --unknown 1

@@ -21,10 +21,10 @@ struct AlignmentConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("coarsest_level", self.coarsest_level, 0, 8,
-             "coarsest pyramid level on which whole images are aligned (640x480: 5 is 20x15); 0 switches the "
-             "search off");
+             "coarsest pyramid level on which whole images are aligned (5 is 20x15 pixels for images of "
+             "640x480); 0 disables the search");
     v.number("pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
-             "this many residuals count as one measurement against the prediction, as for patches");
+             "number of correlated residuals that count as one measurement, as for patches");
   }
 };
 

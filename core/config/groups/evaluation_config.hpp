@@ -25,24 +25,24 @@ struct EvaluationConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
-             "a claimed pose is judged by the motion since the one this long before (seconds)");
+             "undetected failures: interval over which the motion of the estimate is compared with the "
+             "ground truth (seconds)");
     v.number("silent_translation_m", self.silent_translation_m, 1e-4, 100.0,
-             "it is an undetected failure if that motion is off by more than this");
+             "a frame is an undetected failure if the error of that motion is larger than this");
     v.number("silent_rotation_deg", self.silent_rotation_deg, 0.01, 180.0,
              "or if it is rotated by more than this");
     v.flag("intensity_readings", self.intensity_readings,
-           "also record the intensity error by other definitions than that of AIE (docs/metrics.md)");
+           "also computes the intensity error by definitions other than AIE (docs/metrics.md)");
     v.flag("pose_intensity", self.pose_intensity,
-           "also record the intensity error of the poses alone, which every system has (docs/metrics.md); "
-           "the images are read once more");
+           "also computes the intensity error of the poses alone, which is defined for every system "
+           "(docs/metrics.md); reads the images a second time");
     v.number("min_tracked_share", self.min_tracked_share, 0.0, 1.0,
-             "a run that tracks a smaller share of its frames is lost, also where iekf.max_lost_frames never "
-             "ended it");
+             "a run that tracks a smaller share of its frames has status lost, even if iekf.max_lost_frames "
+             "did not end it");
     v.choice("reference_time_offset", self.reference_time_offset,
-             "whether ATE, RPE and undetected failures are computed with the ground truth's stamps as they "
-             "are, or "
-             "shifted by the fitted offset of its clock, where the motion makes it observable "
-             "(docs/metrics.md, reference clock); records hold both");
+             "stamps of the ground truth for ATE, RPE and undetected failures: as recorded, or shifted by "
+             "the fitted offset of its clock if the motion makes it observable (docs/metrics.md, reference "
+             "clock); records contain both results");
   }
 };
 

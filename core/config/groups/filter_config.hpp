@@ -30,32 +30,29 @@ struct IekfConfig {
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_iterations", self.max_iterations, 1, 200, "iterations of one update; 1 is the plain EKF");
     v.flag("prior_in_every_iteration", self.prior_in_every_iteration,
-           "each iteration weighs the distance to the prediction (the MAP estimate, Bell & Cathey 1993); "
-           "false is "
-           "Eq. 22 to the letter, which forgets it after the first one");
+           "every iteration includes the distance to the prediction (MAP estimate, Bell & Cathey 1993); "
+           "false: only the first iteration does, as Eq. 22 is printed");
     v.choice("measurement", self.measurement,
-             "all residuals, or one number, their energy, which should be zero (Eq. 17 to the letter, with "
-             "noise of variance 1): its gradient vanishes where it is least, so that it then says nothing");
+             "the measurement: all residuals, or their energy as one number that should be zero (Eq. 17 as "
+             "printed, noise variance 1); the gradient of the energy vanishes at its minimum, so the update "
+             "has no information there");
     v.number("converged_rotation_rad", self.converged_rotation_rad, 0.0, 1.0,
-             "converged when the last step rotates less than this");
+             "the iterations end when the last step rotates less than this");
     v.number("converged_translation_m", self.converged_translation_m, 0.0, 1.0,
              "and translates less than this");
     v.number("max_chi2_per_measurement", self.max_chi2_per_measurement, 0.1, 1e6,
              "a patch whose mean squared whitened residual exceeds this is rejected");
-    v.number(
-        "scatter_prior_freedom", self.scatter_prior_freedom, 0.0, 1e9,
-        "the variance of the residuals follows how patches disagree; this many degrees of freedom stand for "
-        "the claim before (pixels_per_measurement and the noise), 1e9 for it alone");
-    v.number(
-        "scale_share", self.scale_share, 0.0, 1.0,
-        "the noise of residuals follows what each tracked frame shows by this share (Huber's Proposal 2); 0 "
-        "keeps photometric.noise_grey and the depth noise as they are");
+    v.number("scatter_prior_freedom", self.scatter_prior_freedom, 0.0, 1e9,
+             "the variance of the residuals is estimated from the scatter between patches; degrees of "
+             "freedom of its prior (pixels_per_measurement and the noise); 1e9 uses the prior alone");
+    v.number("scale_share", self.scale_share, 0.0, 1.0,
+             "the noise of residuals moves towards the estimate of each tracked frame by this share (Huber's "
+             "Proposal 2); 0 keeps photometric.noise_grey and the depth noise constant");
     v.number("min_patches", self.min_patches, 1, 1000,
              "with fewer accepted patches the prediction is kept and the frame counts as lost");
-    v.number(
-        "max_lost_frames", self.max_lost_frames, 0, 100000,
-        "more lost frames in a row end the run with status lost; an IMU bridges about a second, after which "
-        "the place can only be found again by relocalisation");
+    v.number("max_lost_frames", self.max_lost_frames, 0, 100000,
+             "more consecutive lost frames end the run with status lost; an IMU bridges about a second, "
+             "later only relocalisation recovers the pose");
   }
 };
 
@@ -71,8 +68,8 @@ struct ColorDriftConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("factor", self.factor, 0.0, 100.0,
-             "colour loses weight against the model by so many times the drift that the corrections by depth "
-             "show (standard deviations); 0 leaves it the weight that the scatter of the patches gives it");
+             "colour is weighted down by this factor on the drift that the corrections by depth show "
+             "(standard deviations); 0: only the scatter of the patches sets its weight");
   }
 };
 

@@ -3,7 +3,7 @@
 
 namespace fusebench::config {
 
-/// Which depth measurements are trusted, and how far.
+/// Gates and noise of depth measurements.
 struct DepthConfig {
   double min_m = 0.3;
   double max_m = 5.0;
@@ -21,9 +21,9 @@ struct DepthConfig {
         "a in the depth noise sigma(z) = a + b (z - c)^2 (metres; Nguyen et al. 2012 for structured light)");
     v.number("noise_quadratic_per_m", self.noise_quadratic_per_m, 0.0, 1.0, "b of the depth noise (1/m)");
     v.number("noise_offset_m", self.noise_offset_m, 0.0, 10.0, "c of the depth noise (metres)");
-    v.number(
-        "edge_jump", self.edge_jump, 0.001, 1.0,
-        "a pixel whose 3x3 neighbourhood jumps by more than this share of its depth is an edge and not used");
+    v.number("edge_jump", self.edge_jump, 0.001, 1.0,
+             "a pixel is an edge and not used if the depth in its 3x3 neighbourhood changes by more than "
+             "this share of it");
     v.number("max_incidence_deg", self.max_incidence_deg, 10.0, 89.0,
              "surfaces seen more obliquely than this are not used (degrees between ray and normal)");
   }
@@ -46,7 +46,8 @@ struct CompensationConfig {
   int max_updates_again = 1;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number("max_updates_again", self.max_updates_again, 0, 10, "at most so many more updates of a frame");
+    v.number("max_updates_again", self.max_updates_again, 0, 10,
+             "largest number of further updates of a frame");
   }
 };
 

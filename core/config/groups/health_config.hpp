@@ -1,9 +1,9 @@
-// Options: when a frame and its update are trusted.
+// Options: diagnosis of a frame and acceptance of its update.
 #pragma once
 
 namespace fusebench::config {
 
-/// When a frame is judged unhealthy, its update not believed, or the frame kept out of the model.
+/// Limits for the diagnosis of a frame, the acceptance of its update and its fusion.
 struct HealthConfig {
   double dark_grey = 6.0;
   double covered_share = 0.25;
@@ -29,32 +29,30 @@ struct HealthConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("dark_grey", self.dark_grey, 0.0, 255.0,
-             "a frame whose mean is below this is dark (grey levels): noise and black level of a covered "
-             "camera stay below");
-    v.number(
-        "covered_share", self.covered_share, 0.0, 1.0,
-        "a frame is occluded if something new covers more than this share of the patches in view; less than "
-        "half, since near surfaces have the strongest corners, so that an object of this size dominates the "
-        "update once patches are cut from it (a hand before 40 % of the image does)");
+             "a frame is dark if its mean is below this (grey levels); noise and black level of a covered "
+             "camera are lower");
+    v.number("covered_share", self.covered_share, 0.0, 1.0,
+             "a frame is occluded if a new object covers more than this share of the patches in view; less "
+             "than half, because near surfaces have the strongest corners: patches cut from a hand in front "
+             "of 40 % of the image dominate the update");
     v.number("min_depth_share", self.min_depth_share, 0.0, 1.0,
-             "a frame with usable depth on a smaller share of its pixels is short of depth; low, since the "
-             "patches themselves ask for more (patches.min_valid_fraction)");
+             "a frame is short of depth if a smaller share of its pixels has usable depth; low, because "
+             "patches require more themselves (patches.min_valid_fraction)");
     v.number(
         "min_correlation", self.min_correlation, -1.0, 1.0,
-        "an update is not believed if the median correlation of the tracked patches is below this: 0 to 0.25 "
-        "on wrong places, at least 0.34 under the worst blur of simulated motion at 10 rad/s");
-    v.number(
-        "max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
-        "an update is not believed if the orientation against the model is less certain along some axis "
-        "(degrees, one sigma): what follows would be fused apart from what is there; three sigmas are an "
-        "undetected failure (evaluation.silent_rotation_deg)");
+        "an update is rejected if the median correlation of the tracked patches is below this; wrong poses "
+        "reach 0 to 0.25, correct ones at least 0.34 under the worst blur of simulated motion at 10 rad/s");
+    v.number("max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
+             "an update is rejected if the standard deviation of the orientation relative to the model is "
+             "larger about any axis (degrees), because the frame would be fused with an offset; three "
+             "standard deviations are an undetected failure (evaluation.silent_rotation_deg)");
     v.number("max_position_sigma_m", self.max_position_sigma_m, 1e-4, 100.0,
-             "the same for the position (metres); 2.5 sigmas are an undetected failure "
+             "an update is rejected if the standard deviation of the position relative to the model is "
+             "larger along any axis (metres); 2.5 standard deviations are an undetected failure "
              "(evaluation.silent_translation_m)");
-    v.number(
-        "max_occluded_frames", self.max_occluded_frames, 0, 100000,
-        "what covers the scene for more frames in a row than this is let into the model; 30 are a second "
-        "at 30 Hz");
+    v.number("max_occluded_frames", self.max_occluded_frames, 0, 100000,
+             "an object that occludes the scene for more consecutive frames than this is fused into the "
+             "model; 30 are one second at 30 Hz");
   }
 };
 

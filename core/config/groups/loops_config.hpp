@@ -79,34 +79,31 @@ struct LoopsConfig {
   double max_pending_s = 5.0;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.choice(
-        "mode", self.mode,
-        "off; detect: loops are looked for and listed with the reason of each decision, and nothing changes; "
-        "final: all poses are optimised at the end, and the model is fused again; online: the same while "
-        "the recording runs as well, when a loop contradicts the poses");
-    v.number(
-        "query_every", self.query_every, 1, 1000,
-        "a fused frame becomes a place after so many fused frames (or 0.25 m, or 15 degrees); about 0.2 MB a "
-        "place at 640x480");
+    v.choice("mode", self.mode,
+             "off; detect: loops are detected and listed with the reason of each decision, poses stay "
+             "unchanged; final: all poses are optimised at the end, and the model is fused again; online: "
+             "also during the recording, when a loop contradicts the poses");
+    v.number("query_every", self.query_every, 1, 1000,
+             "a fused frame is stored as a place every this many fused frames (or after 0.25 m or 15 "
+             "degrees); about 0.2 MB per place at 640x480");
     v.number("least_age_s", self.least_age_s, 0.5, 1000.0,
-             "least time between the two places of a loop (seconds); the model itself holds what is younger");
+             "least time between the two places of a loop (seconds); the model contains all younger frames");
     v.number(
         "max_features", self.max_features, 20, 20000,
-        "largest number of features of a place; they are found at half the image size, not below 320 pixels");
+        "largest number of features of a place, detected at half the image size, but at least 320 pixels");
     v.number("max_dissimilarity", self.max_dissimilarity, 0.05, 1.0,
              "share of the ferns in which two similar places may differ (Glocker et al. 2015)");
-    v.number("max_path_candidates", self.max_path_candidates, 0, 100,
-             "candidates by the poses so far, those with the nearest view first, beside eight by appearance");
-    v.number("max_violating_share", self.max_violating_share, 0.0, 1.0,
-             "largest share of the depth of either frame that may lie where the other one saw free space");
-    v.number("timing_sigma_s", self.timing_sigma_s, 0.0, 0.1,
-             "standard deviation of the instants of colour, depth and their rows (seconds): the motion of "
-             "the camera "
-             "within it counts as an error of an edge");
     v.number(
-        "max_chi2", self.max_chi2, 1.0, 1000.0,
-        "largest squared distance between a single edge and the poses so far (chi-square, six degrees of "
-        "freedom; 0.1 %)");
+        "max_path_candidates", self.max_path_candidates, 0, 100,
+        "number of candidates by the current poses, nearest views first, in addition to eight by appearance");
+    v.number("max_violating_share", self.max_violating_share, 0.0, 1.0,
+             "largest share of the depth of either frame that may be in the free space of the other one");
+    v.number("timing_sigma_s", self.timing_sigma_s, 0.0, 0.1,
+             "standard deviation of the times of colour, depth and their rows (seconds); the camera motion "
+             "during it is added to the error of an edge");
+    v.number("max_chi2", self.max_chi2, 1.0, 1000.0,
+             "largest squared Mahalanobis distance between a single edge and the current poses (chi-square, "
+             "six degrees of freedom; 0.1 %)");
     v.number(
         "online_translation_m", self.online_translation_m, 0.0, 1.0,
         "with mode online, least translation of the current pose for which all poses are corrected (metres)");
@@ -119,13 +116,11 @@ struct LoopsConfig {
     v.number("max_online_corrections", self.max_online_corrections, 0, 1000,
              "with mode online, largest number of corrections in a recording");
     v.number("max_pending_s", self.max_pending_s, 0.0, 1000.0,
-             "with mode online, how long surfaces that were seen least_age_s ago and do not fit are not "
-             "fused over "
-             "(seconds; 0: they are at once)");
-    v.number(
-        "drift_factor", self.drift_factor, 0.1, 100.0,
-        "standard deviation of the drift between places relative to the claim of the filter, whose NEES on "
-        "realistic recordings is 10 to 30");
+             "with mode online, time during which surfaces that are older than least_age_s and do not fit "
+             "are not overwritten (seconds; 0: they are overwritten at once)");
+    v.number("drift_factor", self.drift_factor, 0.1, 100.0,
+             "factor on the filter's standard deviation of the drift between places; its NEES on realistic "
+             "recordings is 10 to 30");
   }
 };
 

@@ -19,7 +19,7 @@ constexpr auto option_choices(Refresh) {
   return choices<Refresh>({{"each", Refresh::each}, {"anchor", Refresh::anchor}});
 }
 
-/// When one of two pixels that land at one place is hidden by the other.
+/// When one of two pixels that project to the same position is occluded by the other.
 enum class ShrinkTest { depth_jump, any_collision };
 constexpr auto option_choices(ShrinkTest) {
   return choices<ShrinkTest>(
@@ -47,9 +47,8 @@ struct PatchConfig {
     v.number("size_px", self.size_px, 4, 64, "side of the square patch at each level (Sec. 3.1: 10)");
     v.number("levels", self.levels, 1, 6, "pyramid levels on which each patch is tracked");
     v.number("fast_threshold", self.fast_threshold, 1, 200,
-             "FAST corner threshold (grey levels; Rosten & Drummond 2006); low, since the strongest corner "
-             "of each "
-             "cell is taken and blurred frames have only weak ones");
+             "FAST corner threshold (grey levels; Rosten & Drummond 2006); low, because the strongest corner "
+             "of each cell is used and blurred frames have only weak corners");
     v.number("min_distance_px", self.min_distance_px, 1, 500, "least distance between two patch centres");
     v.number("min_valid_px", self.min_valid_px, 1, 4096,
              "a patch with fewer usable pixels at level 0 is rejected (derived from 10x10 patches)");
@@ -59,23 +58,21 @@ struct PatchConfig {
         "max_mean_error", self.max_mean_error, 1.0, 255.0,
         "a patch whose mean absolute error exceeds this is dropped after the update (grey levels, Sec. 2.3)");
     v.number("occlusion_distance_m", self.occlusion_distance_m, 0.001, 1.0,
-             "a pixel whose predicted depth differs from the measured one by more is occluded, or is the "
-             "surface that "
-             "appeared behind it (twice as much while only coarse levels are in use); as wide as the "
-             "association gate, "
-             "since a tighter one drops every patch as soon as the pose has drifted by it");
+             "a pixel is occluded or disoccluded if its predicted depth differs from the measured one by "
+             "more (by twice as much while only coarse levels are used); as wide as the association gate, "
+             "because a tighter gate drops every patch once the pose has drifted by it");
     v.choice("reference_surface", self.reference_surface,
              "depth and normals of a patch: from the model (Sec. 2.3), from the frame that it is cut from "
              "(Sec. 2.1.1), or from that frame with no gate on its depth");
     v.choice("refresh", self.refresh,
-             "all patches are cut anew from each fused frame, or they stay with the frame that they were cut "
-             "from (their anchor, whose pose is in the state) until the image no longer agrees with them");
+             "each: all patches are cut again from each fused frame; anchor: they keep the frame that "
+             "they were cut from (its pose is in the state) until they no longer agree with the image");
     v.number("anchor_share", self.anchor_share, 0.0, 1.0,
-             "with refresh = anchor: patches are cut anew when the correlations of those that survive the "
-             "update add up to less than this share of the number of patches");
+             "with refresh = anchor: patches are cut again when the correlations of the surviving patches "
+             "sum to less than this share of the number of patches");
     v.choice("shrink_test", self.shrink_test,
-             "of two pixels that land at one place the farther one is dropped if it is clearly farther, or "
-             "always (Sec. 2.1.1 to the letter)");
+             "of two pixels that project to the same position the farther one is dropped if it is clearly "
+             "farther, or always (Sec. 2.1.1 as printed)");
   }
 };
 

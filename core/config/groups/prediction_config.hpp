@@ -1,9 +1,9 @@
-// Options: the first state, and what predicts the next ones.
+// Options: the initial state and the prediction of the following ones.
 #pragma once
 
 namespace fusebench::config {
 
-/// Process noise of the priors. IMU densities come with the recording; here is what comes on top.
+/// Process noise of the priors, in addition to the IMU noise densities of the recording.
 struct MotionConfig {
   double imu_noise_factor = 1.0;
   double speed_mps = 0.2;
@@ -24,27 +24,28 @@ struct MotionConfig {
   double exposure_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number(
-        "imu_noise_factor", self.imu_noise_factor, 0.01, 1000.0,
-        "factor on the recording's IMU noise densities (>1 absorbs what they leave out, e.g. scale errors)");
+    v.number("imu_noise_factor", self.imu_noise_factor, 0.01, 1000.0,
+             "factor on the IMU noise densities of the recording; more than 1 covers unmodelled errors, e.g. "
+             "of the scale");
     v.number(
         "speed_mps", self.speed_mps, 1e-3, 100.0,
         "dead reckoning without an IMU: standard deviation of the linear velocity per axis at the start of a "
         "recording (m/s); root mean square of seven hand-held recordings (0.06 to 0.28)");
     v.number("rate_radps", self.rate_radps, 1e-3, 100.0,
-             "the same of the angular velocity (rad/s; 0.15 to 0.74 on these)");
-    v.number(
-        "acceleration_noise_mps2_sqrthz", self.acceleration_noise_mps2_sqrthz, 1e-3, 1e3,
-        "prior of an update without an IMU: white acceleration (m/s^2/sqrt(Hz)), 0.3 m/s from frame to frame "
-        "at 30 Hz: more than hand-held cameras have, so that the images decide on sudden motions");
+             "dead reckoning without an IMU: standard deviation of the angular velocity per axis at the "
+             "start of a recording (rad/s; 0.15 to 0.74 in the same recordings)");
+    v.number("acceleration_noise_mps2_sqrthz", self.acceleration_noise_mps2_sqrthz, 1e-3, 1e3,
+             "prior of an update without an IMU: white acceleration (m/s^2/sqrt(Hz)), 0.3 m/s between frames "
+             "at 30 Hz; larger than for hand-held cameras, so that the images determine sudden motions");
     v.number("angular_acceleration_noise_radps2_sqrthz", self.angular_acceleration_noise_radps2_sqrthz, 1e-3,
-             1e3, "the same of the angular velocity (rad/s^2/sqrt(Hz)): 0.5 rad/s from frame to frame");
-    v.number(
-        "drift_factor", self.drift_factor, 1.0, 100.0,
-        "the model drifts this much more than independent errors of the frames would make it (standard "
-        "deviations): consecutive frames see the same patches on the same model, so their errors are alike; "
-        "only the reported uncertainty depends on it; chosen so that the NEES of simulated slow runs is near "
-        "1 (1.1 to 1.3; 0.6 to 0.8 under fast motion)");
+             1e3,
+             "prior of an update without an IMU: white angular acceleration (rad/s^2/sqrt(Hz)), 0.5 rad/s "
+             "between frames");
+    v.number("drift_factor", self.drift_factor, 1.0, 100.0,
+             "factor on the drift of the model relative to independent errors of the frames (standard "
+             "deviations): consecutive frames share patches and model, so their errors are correlated. "
+             "Changes only the reported uncertainty; the NEES of simulated runs is 1.1 to 1.3 (slow) and 0.6 "
+             "to 0.8 (fast)");
     v.number(
         "exposure_s", self.exposure_s, 0.0, 0.5,
         "exposure of a colour image, from which motion blur is predicted (seconds; no format records it, "
@@ -73,32 +74,29 @@ struct InitialisationConfig {
   int false_start_frames = 5;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number(
-        "window_s", self.window_s, 0.02, 10.0,
-        "IMU samples within this time around the first frame give gravity (and the gyroscope bias at rest)");
+    v.number("window_s", self.window_s, 0.02, 10.0,
+             "gravity (and at rest the gyroscope bias) is initialised from IMU samples within this time "
+             "around the first frame");
     v.number("moving_velocity_sigma_mps", self.moving_velocity_sigma_mps, 1e-3, 10.0,
              "velocity prior in motion: zero with this standard deviation");
     v.number("angular_velocity_sigma_radps", self.angular_velocity_sigma_radps, 1e-3, 100.0,
              "angular velocity prior without an IMU: zero with this standard deviation");
     v.number("gyroscope_bias_sigma_radps", self.gyroscope_bias_sigma_radps, 0.0, 1.0,
-             "gyroscope bias prior (a ZR300's factory offsets are up to 0.004 rad/s); wider, slow drifts of "
-             "the images pass "
-             "for bias");
+             "gyroscope bias prior (a ZR300's factory offsets are up to 0.004 rad/s); with a wider one, slow "
+             "drifts of the images are estimated as bias");
     v.number("accelerometer_bias_sigma_mps2", self.accelerometer_bias_sigma_mps2, 0.0, 5.0,
              "accelerometer bias prior (the raw axes of a ZR300 are off by up to 0.3 m/s^2)");
-    v.number(
-        "imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.1,
-        "prior of the offset between the clocks of IMU and camera (7 ms is typical of a ZR300); 0 trusts the "
-        "stamps; an offset of tenths of a second is for `fusebench calibrate` to find and for "
-        "calibration.toml to say");
+    v.number("imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.1,
+             "prior of the offset between the clocks of IMU and camera (7 ms is typical of a ZR300); 0 uses "
+             "the stamps unchanged; for offsets of tenths of a second, run `fusebench calibrate` and store "
+             "the result in calibration.toml");
     v.number("false_start_frames", self.false_start_frames, 1, 1000,
-             "while fewer frames than this were tracked, a lost frame of sound images starts the run again "
-             "after so many lost ones in all, since the first frame was of no use; a few, so that "
-             "relocalisation has its chances");
+             "while fewer frames than this are tracked, the run restarts at a later frame after this many "
+             "lost frames with usable images; a few, so that relocalisation is tried first");
   }
 };
 
-/// The constants of the sensors that are estimated with the motion.
+/// The sensor constants that are estimated together with the motion.
 struct SelfCalibrationConfig {
   bool color_readout = true;
   bool depth_readout = true;
@@ -113,22 +111,24 @@ struct SelfCalibrationConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.flag("color_readout", self.color_readout,
-           "estimate the read-out time of colour around what the calibration says, as far as that is "
-           "uncertain (readout_sigma_s there); false holds it");
+           "estimates the read-out time of colour with the calibration's value and uncertainty "
+           "(readout_sigma_s) as prior; false keeps it constant");
     v.flag("depth_readout", self.depth_readout, "the same for depth");
-    v.flag("depth_delay", self.depth_delay, "the same for the delay of depth against colour");
-    v.number("imu_rotation_sigma_rad", self.imu_rotation_sigma_rad, 0.0, 0.5,
-             "prior of the rotation of the IMU against what the calibration says, by axis (rad); 0 holds it");
+    v.flag("depth_delay", self.depth_delay,
+           "estimates the delay of depth relative to colour with the calibration's value and uncertainty "
+           "(delay_sigma_s) as prior; false keeps it constant");
+    v.number(
+        "imu_rotation_sigma_rad", self.imu_rotation_sigma_rad, 0.0, 0.5,
+        "prior of the error of the IMU's rotation in the calibration, per axis (rad); 0 keeps it constant");
     v.number("gyroscope_scale_sigma", self.gyroscope_scale_sigma, 0.0, 0.2,
-             "prior of the scale errors of the gyroscope's axes (data sheets of consumer IMUs say 1 to 3 %); "
-             "0 holds them");
+             "prior of the scale errors of the gyroscope's axes (1 to 3 % in data sheets of consumer IMUs); "
+             "0 keeps them constant");
     v.number("accelerometer_scale_sigma", self.accelerometer_scale_sigma, 0.0, 0.2,
              "the same for the accelerometer");
     v.number(
         "timing_walk", self.timing_walk, 0.0, 10.0,
-        "read-outs, delay of depth and offset of the IMU's clock may wander by so many standard "
-        "deviations of their priors in a second (random walk, 1/sqrt(s)); 0: constants, as they are in a "
-        "recording of minutes by one device");
+        "random walk of the read-outs, the delay of depth and the offset of the IMU's clock, in standard "
+        "deviations of their priors (1/sqrt(s)); 0: constants, as in a recording of minutes by one device");
   }
 };
 

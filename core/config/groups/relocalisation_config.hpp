@@ -1,10 +1,9 @@
-// Options: places that are found again by a camera that is lost, the features that they are known by, and
-// what is tracked apart from the map until then.
+// Options: keyframes and features for the relocalisation of a lost camera, and map segments.
 #pragma once
 
 namespace fusebench::config {
 
-/// Which frames are kept to be found again by, and when a found pose is believed.
+/// Selection of keyframes, and acceptance of a relocalised pose.
 struct RelocalisationConfig {
   double keyframe_distance_m = 0.3;
   double keyframe_angle_deg = 20.0;
@@ -55,10 +54,9 @@ struct RelocalisationConfig {
   double min_odds = 100.0;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number(
-        "keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
-        "distance between keyframes (metres), by which a lost camera is found: at 1 to 3 m from the scene a "
-        "camera half as far aside sees it turned by some 5 degrees, which descriptors hardly notice");
+    v.number("keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
+             "distance between keyframes (metres); 1 to 3 m from the scene, half this distance changes the "
+             "viewing angle by about 5 degrees, to which descriptors are insensitive");
     v.number("keyframe_angle_deg", self.keyframe_angle_deg, 0.1, 180.0,
              "angle between the optical axes of keyframes at one place (degrees): a third of the usual field "
              "of view, "
@@ -68,22 +66,19 @@ struct RelocalisationConfig {
         "largest number of keyframes: with more, one of the two nearest to each other is dropped. Each takes "
         "1 MB at 640x480, and a search compares with all of them");
     v.number("min_inliers", self.min_inliers, 6, RelocalisationConfig::min_landmarks,
-             "least number of inliers of a pose by features: 1.5 times what keyframes of another room gave "
-             "at most in "
-             "simulations (16)");
-    v.number(
-        "lookalike_density", self.lookalike_density, 0.0, 1e6,
-        "places outside of the map that look like one inside, per cubic metre and cubic radian (of which "
-        "there are 79): 1e-6 is one in 13,000 m3, a large floor of a building. It bounds how uncertain dead "
-        "reckoning may be when a place is accepted");
-    v.number(
-        "min_odds", self.min_odds, 1.0, 1e12,
-        "a place is accepted if it is this many times as probable as all others that look like it, known or "
-        "not");
+             "least number of inliers of a pose by features: 1.5 times the maximum (16) of keyframes of "
+             "another room in simulations");
+    v.number("lookalike_density", self.lookalike_density, 0.0, 1e6,
+             "density of places outside the map that look like one inside, per cubic metre and cubic radian "
+             "(79 in total): 1e-6 is one in 13,000 m3, a large floor of a building. It limits the "
+             "uncertainty of dead reckoning at which a place is accepted");
+    v.number("min_odds", self.min_odds, 1.0, 1e12,
+             "a place is accepted if it is this many times as probable as all ambiguous candidates, inside "
+             "and outside the map");
   }
 };
 
-/// Corners by which places are recognised (ORB; Rublee et al. 2011), and which two are the same.
+/// Features for place recognition (ORB; Rublee et al. 2011) and their matching.
 struct PlaceFeaturesConfig {
   int max_count = 800;
   /// Threshold of FAST corners (grey levels): low, since the image of a lost camera is often blurred. The
@@ -108,27 +103,23 @@ struct PlaceFeaturesConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_count", self.max_count, RelocalisationConfig::min_landmarks, 20000,
-             "at most this many features an image (ORB-SLAM takes 1000 at this resolution); matching takes "
-             "time with the square");
+             "largest number of features of an image (ORB-SLAM: 1000 at this resolution); the time of "
+             "matching grows with its square");
   }
 };
 
-/// When a segment begins, and how often the map is looked for in it.
+/// Start of a map segment, and the rate at which it is matched with the map.
 struct SegmentsConfig {
   double begin_after_s = 0.5;
   int search_every = 5;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number(
-        "begin_after_s", self.begin_after_s, 0.0, 1e6,
-        "a camera that has been lost for so long (seconds), and sees nothing that is in the map, is tracked "
-        "in "
-        "a segment of its own, which is joined to the map when a place of it is recognised; 0: never. Needs "
-        "terms.relocalisation");
-    v.number(
-        "search_every", self.search_every, 1, 1000,
-        "the map is looked for in every so many frames of a segment: a search takes as long as tracking a "
-        "frame");
+    v.number("begin_after_s", self.begin_after_s, 0.0, 1e6,
+             "a camera that is lost for this long (seconds) is tracked in a separate map segment, which is "
+             "joined to the map when a place of it is recognised; 0: never. Requires terms.relocalisation");
+    v.number("search_every", self.search_every, 1, 1000,
+             "one of this many frames of a segment is searched in the map; a search takes as long as "
+             "tracking a frame");
   }
 };
 

@@ -1,11 +1,11 @@
-// Options: the residuals of patches, and when they count.
+// Options: residuals of patches and their weights.
 #pragma once
 
 #include "core/config/groups/option_choices.hpp"
 
 namespace fusebench::config {
 
-/// How the current image is read where a pixel lands.
+/// Sampling of the current image at a warped pixel.
 enum class Sampling { bicubic, whole_pixel };
 constexpr auto option_choices(Sampling) {
   return choices<Sampling>({{"bicubic", Sampling::bicubic}, {"whole_pixel", Sampling::whole_pixel}});
@@ -28,15 +28,15 @@ struct PhotometricConfig {
         "residuals beyond this many standard deviations lose weight (Huber 1964; 1.345 = 95 % efficiency)");
     v.number(
         "pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
-        "this many residuals count as one measurement, since the pixels of a patch share their errors (blur, "
-        "calibration, interpolation); 300 are all pixels of a 10x10 patch on three levels");
+        "number of residuals that count as one measurement, because the pixels of a patch share their errors "
+        "(blur, calibration, interpolation); 300 are all pixels of a 10x10 patch on three levels");
     v.number("gain_sigma", self.gain_sigma, 0.0, 10.0,
              "prior of the brightness gain of a patch around 1; 0 fixes it");
     v.number("offset_sigma_grey", self.offset_sigma_grey, 0.0, 255.0,
              "prior of the brightness offset of a patch around 0 (grey levels); 0 fixes it");
     v.choice("sampling", self.sampling,
-             "the image is interpolated where a pixel lands, or read at the nearest whole pixel (Sec. 2.1.1 "
-             "to the letter)");
+             "intensity of a warped pixel: interpolated, or read at the nearest whole pixel (Sec. 2.1.1 as "
+             "printed)");
   }
 };
 
@@ -55,14 +55,12 @@ struct GeometricConfig {
              "4, since "
              "depth has structured outliers");
     v.number("pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
-             "this many residuals count as one measurement, since depth errors of neighbouring pixels have "
-             "one cause; "
-             "as for photometric residuals");
+             "number of residuals that count as one measurement, because depth errors of neighbouring pixels "
+             "are correlated; as for photometric residuals");
     v.number("common_error_share", self.common_error_share, 0.0, 10.0,
-             "of the depth noise (standard deviations), what all measurements of a frame have in common: a "
-             "fixed error of the depth sensor over its image, which the scatter between patches does not "
-             "show; with an IMU the depth of one frame counts as at most 1 / share^2 measurements, 0: no "
-             "limit");
+             "share of the depth noise (standard deviations) that all measurements of a frame have in "
+             "common: a fixed pattern of the sensor, which the scatter between patches does not show. With "
+             "an IMU, the depth of one frame counts as at most 1 / share^2 measurements; 0: no limit");
     v.number("model_noise_m", self.model_noise_m, 0.0, 1.0,
              "noise of the model's surface, added to the depth's");
     v.number("max_distance_m", self.max_distance_m, 0.001, 2.0,

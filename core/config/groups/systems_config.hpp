@@ -1,4 +1,4 @@
-// Options: which system runs, and those of each system that is not the paper's.
+// Options: the system that runs, and the options of each system other than the paper's.
 #pragma once
 
 #include "core/config/groups/option_choices.hpp"
@@ -15,21 +15,20 @@ constexpr auto option_choices(SystemMethod) {
                                 {"elasticfusion", SystemMethod::elasticfusion}});
 }
 
-/// Which system runs.
+/// The system that runs.
 struct SystemConfig {
   SystemMethod method = SystemMethod::filter;
   double replicate_noise = 1e-6;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.choice("method", self.method,
-             "the system that runs: the paper's filter, which all groups of options belong to that are not "
-             "named after a system; InfiniTAM's method (Kaehler et al. 2015), OpenCV's odometries from frame "
-             "to frame, or BundleFusion's method (Dai et al. 2017), all with the depth and tsdf options as "
-             "well; or ElasticFusion's method (Whelan et al. 2015), with depth.min_m and max_m as well");
-    v.number(
-        "replicate_noise", self.replicate_noise, 0.0, 0.01,
-        "replicate k > 0 of a run (--replicates) begins at an initial pose that differs from the identity by "
-        "seeded noise of this standard deviation, in metres and radians");
+    v.choice(
+        "method", self.method,
+        "the system that runs: the paper's filter (all groups without the name of a system); InfiniTAM "
+        "(Kaehler et al. 2015), OpenCV's frame-to-frame odometries or BundleFusion (Dai et al. 2017), with "
+        "the depth and tsdf options; or ElasticFusion (Whelan et al. 2015), with depth.min_m and max_m");
+    v.number("replicate_noise", self.replicate_noise, 0.0, 0.01,
+             "standard deviation of the seeded noise on the initial pose of replicate k > 0 (--replicates), "
+             "in metres and radians");
   }
 };
 
@@ -40,7 +39,7 @@ constexpr auto option_choices(InfinitamTracker) {
       {{"extended", InfinitamTracker::extended}, {"icp", InfinitamTracker::icp}});
 }
 
-/// What InfiniTAM does with a frame that its quality measure calls a failure.
+/// InfiniTAM's reaction to a frame that its quality measure classifies as a failure.
 enum class InfinitamFailure { ignore, stop_fusion, relocalise };
 constexpr auto option_choices(InfinitamFailure) {
   return choices<InfinitamFailure>({{"ignore", InfinitamFailure::ignore},
@@ -90,9 +89,9 @@ struct InfinitamConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.choice("tracker", self.tracker,
-             "extended: robust weights by distance and confidence; icp: the plain one of KinectFusion");
+             "extended: robust weights by distance and confidence; icp: KinectFusion's tracker");
     v.flag("use_color", self.use_color,
-           "the extended tracker aligns intensities with those of the frame before as well");
+           "the extended tracker also aligns intensities with the previous frame");
     v.number("rotation_levels", self.rotation_levels, 0, 6,
              "coarsest levels of the depth pyramid, which only rotate");
     v.number("full_levels", self.full_levels, 1, 6, "finer levels, which move in all six directions");
@@ -105,10 +104,10 @@ struct InfinitamConfig {
     v.number("gate_fine", self.gate_fine, 1e-6, 10.0, "the same of the finest level");
     v.number("min_step", self.min_step, 0.0, 1.0, "a level ends when a step is smaller (radians and metres)");
     v.choice("on_failure", self.on_failure,
-             "what follows from that: nothing (the program's default), bad frames are not fused, or the "
-             "place is looked for among stored frames (Glocker et al. 2015)");
+             "reaction to bad tracking: none (the program's default), bad frames are not fused, or the pose "
+             "is searched among stored frames (Glocker et al. 2015)");
     v.choice("defects", self.defects,
-             "as_published: tests of the relocaliser see the top left quarter of its image alone");
+             "as_published: the relocaliser's tests read only the top left quarter of its image");
   }
 };
 
@@ -131,8 +130,8 @@ struct OpencvOdometryConfig {
   }
 };
 
-/// BundleFusion: weights of its adjustments, and what its keypoints are chosen by. Defaults are the
-/// program's, but for dense_far_m.
+/// BundleFusion: weights of its adjustments, and selection of keypoints. Defaults are the program's, except
+/// for dense_far_m.
 struct BundlefusionConfig {
   /// Keypoints of a frame, at most, the strongest first.
   static constexpr int max_keypoints = 1024;
@@ -151,10 +150,10 @@ struct BundlefusionConfig {
   double max_residual_m = 0.08;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number("dense_far_m", self.dense_far_m, 0.1, 100.0,
-             "the weight of depth falls to 0 here (metres), as (1 - z / dense_far_m)^2.5. The authors edited "
-             "this function in the source for each sequence that they published; this is one setting for all "
-             "recordings");
+    v.number(
+        "dense_far_m", self.dense_far_m, 0.1, 100.0,
+        "depth at which its weight (1 - z / dense_far_m)^2.5 reaches 0 (metres). The authors changed this "
+        "function in the source for each published sequence; here one setting is used for all recordings");
     v.number(
         "min_keypoint_scale_px", self.min_keypoint_scale_px, 0.0, 100.0,
         "standard deviation of the Gaussian at which a keypoint is found (pixels); finer ones are not used");
@@ -196,21 +195,22 @@ struct ElasticfusionConfig {
     v.flag("rotation_start", self.rotation_start,
            "tracking starts from the rotation between the last two small images");
     v.number("stable_confidence", self.stable_confidence, 0.0, 1000.0,
-             "surfels of more are stable: they are seen by tracking, and stay");
-    v.number("time_window", self.time_window, 1, 1000000,
-             "surfels not updated for so many frames are inactive: not tracked against, and fused no more");
+             "surfels with more confidence are stable: tracking uses them, and they are never removed");
+    v.number(
+        "time_window", self.time_window, 1, 1000000,
+        "surfels without an update for this many frames are inactive: tracking and fusion do not use them");
     v.choice("loops", self.loops,
              "none; local: the active model is registered to the inactive one in view; all: places that "
              "ferns recognise as well");
     v.flag("relocalise", self.relocalise,
-           "a frame that fits badly is lost and not fused, and its place is looked for by ferns");
+           "a frame with a bad fit is lost and not fused, and its pose is searched by ferns");
     v.flag("use_imu", self.use_imu,
            "tracking with the inertial term of Laidlow et al. 2017 and its prediction");
     v.choice(
         "defects", self.defects,
-        "as_published: intensities are weighed by the number of pixels in place of their deviation, "
-        "compared at whole pixels of the model, planes draw with a tenth of their weight, blue weighs as red "
-        "should, and holes of a view that is registered for a loop are black; fixed: none of these");
+        "as_published keeps five errors of the program: intensities are weighted by the number of pixels "
+        "instead of their deviation and compared at whole pixels, planes have a tenth of their weight, blue "
+        "has red's weight, and holes of a view that is registered for a loop are black; fixed: without them");
   }
 };
 

@@ -5,13 +5,13 @@
 
 namespace fusebench::config {
 
-/// What predicts the state between frames.
+/// The prediction of the state between frames.
 enum class Prior { imu, constant_velocity };
 constexpr auto option_choices(Prior) {
   return choices<Prior>({{"imu", Prior::imu}, {"constant_velocity", Prior::constant_velocity}});
 }
 
-/// How a patch changes its shape between frames.
+/// The deformation model of a patch between frames.
 enum class Deformation { pixelwise, planar, rigid_square };
 constexpr auto option_choices(Deformation) {
   return choices<Deformation>({{"pixelwise", Deformation::pixelwise},
@@ -19,7 +19,7 @@ constexpr auto option_choices(Deformation) {
                                {"rigid_square", Deformation::rigid_square}});
 }
 
-/// What moves a patch to its place in the current frame.
+/// The tracking of a patch in the current frame.
 enum class PatchMotion { by_pose, own_translation };
 constexpr auto option_choices(PatchMotion) {
   return choices<PatchMotion>(
@@ -38,25 +38,22 @@ struct TermsConfig {
   double geometric_weight = 1.0;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.choice("prior", self.prior, "what predicts the state: the IMU (Eqs. 11-14) or constant velocity");
+    v.choice("prior", self.prior, "prediction of the state: by the IMU (Eqs. 11-14) or constant velocity");
     v.choice(
         "deformation", self.deformation,
         "shape change of patches: each pixel by its own depth (Eqs. 1-2), one plane a patch (Bloesch et al. "
         "2017), or a rigid square at one depth (the direct method)");
-    v.choice(
-        "patch_motion", self.patch_motion,
-        "patches are found by the pose that all of them agree on (Eq. 5), or each by a translation in the "
-        "image of its own, from where the prediction puts it (Lucas & Kanade 1981); the pose is the same");
+    v.choice("patch_motion", self.patch_motion,
+             "patches are tracked by one pose for all (Eq. 5), or each by its own translation in the image, "
+             "starting at its predicted position (Lucas & Kanade 1981); both give the same pose");
     v.flag("visibility_test", self.visibility_test,
            "drop pixels that are occluded in the current frame (the shrink effect, Sec. 2.1.1)");
     v.flag("motion_compensation", self.motion_compensation,
-           "bring all rows of colour and depth to one instant by the estimated velocity (rolling shutter, "
-           "depth delay; "
-           "not in the paper)");
-    v.flag(
-        "relocalisation", self.relocalisation,
-        "a lost tracker looks for the frame's place among the frames that it fused (ORB features and their "
-        "3D points; Mur-Artal & Tardos 2017; not in the paper)");
+           "compensates rolling shutter and depth delay: all rows of colour and depth are moved to one time "
+           "by the estimated velocity (not in the paper)");
+    v.flag("relocalisation", self.relocalisation,
+           "a lost frame is relocalised against stored keyframes (ORB features and their 3D points; "
+           "Mur-Artal & Tardos 2017; not in the paper)");
     v.number("photometric_weight", self.photometric_weight, 0.0, 1e3,
              "factor on the information of the photometric residuals (Eq. 3); 0 switches the term off");
     v.number("geometric_weight", self.geometric_weight, 0.0, 1e3,

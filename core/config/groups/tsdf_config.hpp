@@ -19,7 +19,7 @@ struct TsdfConfig {
     v.number("truncation_sigmas", self.truncation_sigmas, 0.0, 20.0,
              "the band grows with depth to this many standard deviations of the depth noise");
     v.number("max_weight", self.max_weight, 1.0, 2048.0,
-             "weights saturate here, so that the model can change");
+             "largest weight of a voxel; a limit lets the model follow changes of the scene");
     v.number("max_blocks", self.max_blocks, 1, 4194303,
              "memory limit: blocks of 8x8x8 voxels; when it is reached the run reports it");
     v.number("min_mesh_weight", self.min_mesh_weight, 0.0, 2048.0,

@@ -43,7 +43,7 @@ Result<void> read_frames(const fs::path& mav0, const recording::ReadOptions& opt
   }
   const auto listed = [&](const char* sensor) {
     return reading::read_image_list(mav0 / sensor / "data.csv", mav0 / sensor / "data",
-                                    io::TimeUnit::nanoseconds);
+                                    io::TimeUnit::nanoseconds, recording.warnings);
   };
   const auto color = listed("cam0");
   if (!color) return tl::unexpected(color.error());

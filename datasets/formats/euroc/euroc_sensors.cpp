@@ -31,7 +31,7 @@ struct Camera {
 Result<SE3> pose_in_body(const SensorYaml& yaml) {
   const auto rows = yaml.numbers("T_BS.data", 16);
   if (!rows) return tl::unexpected(rows.error());
-  const auto T = calibration::rigid_transform(std::span(*rows).first<12>());
+  const auto T = calibration::rigid_transform(std::span(*rows).first<16>());
   if (T && T->translation.cwiseAbs().maxCoeff() > calibration::kMostLeverArm_m) {
     return yaml.fail_at("T_BS.data",
                         fmt::format("T_BS has a translation of {:g} m (allowed up to {} m)",
@@ -69,10 +69,7 @@ Result<Camera> read_camera(const std::filesystem::path& file) {
 }
 
 bool same(const Camera& a, const Camera& b) {
-  const PinholeCamera& p = a.camera.pinhole;
-  const PinholeCamera& q = b.camera.pinhole;
-  return p.width_px == q.width_px && p.height_px == q.height_px && p.fx_px == q.fx_px && p.fy_px == q.fy_px &&
-         p.cx_px == q.cx_px && p.cy_px == q.cy_px &&
+  return a.camera.pinhole == b.camera.pinhole &&
          pose_minus(a.T_body_camera, b.T_body_camera).norm() < kSameTransform;
 }
 
@@ -85,7 +82,9 @@ Result<void> read_depth(const std::filesystem::path& file, const Camera& color,
   if (yaml->has("depth_units_per_metre")) {
     const auto units = yaml->number("depth_units_per_metre");
     if (!units) return tl::unexpected(units.error());
-    if (!(*units > 0)) return yaml->fail_at("depth_units_per_metre", "depth_units_per_metre must be above 0");
+    if (!calibration::is_units_per_metre(*units))
+      return calibration::no_units_per_metre(ErrorCode::data_corrupt,
+                                             fmt::format("{}: depth_units_per_metre", file.string()), *units);
     calibration.depth_units_per_metre = *units;
   }
   const auto depth = read_camera(file);

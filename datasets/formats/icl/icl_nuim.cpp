@@ -79,7 +79,8 @@ Result<reading::NumberedFrame> frame_of(const io::TextTable& table, const readin
   return reading::NumberedFrame{index, row.color_file, row.depth_file};
 }
 
-Result<std::vector<reading::NumberedFrame>> read_frames(const std::filesystem::path& folder) {
+Result<std::vector<reading::NumberedFrame>> read_frames(const std::filesystem::path& folder,
+                                                        std::vector<std::string>& warnings) {
   std::vector<reading::NumberedFrame> frames;
   const auto take = [&](const io::TextTable& table, const reading::AssociatedRow& row) -> Result<void> {
     const auto frame = frame_of(table, row);
@@ -91,7 +92,7 @@ Result<std::vector<reading::NumberedFrame>> read_frames(const std::filesystem::p
     frames.push_back(*frame);
     return {};
   };
-  if (const auto read = reading::for_each_associated_row(folder / "associations.txt", take); !read)
+  if (const auto read = reading::for_each_associated_row(folder / "associations.txt", take, warnings); !read)
     return tl::unexpected(read.error());
   return frames;
 }
@@ -154,7 +155,7 @@ Result<recording::Recording> open_icl_nuim(const std::filesystem::path& folder,
   auto calibration = recording::choose_calibration(
       folder, options, [] { return Result<calibration::RigCalibration>(icl_calibration()); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto frames = read_frames(folder);
+  const auto frames = read_frames(folder, recording.warnings);
   if (!frames) return tl::unexpected(frames.error());
   reading::add_numbered_frames(*frames, "ICL-NUIM has no stamps", reading::frame_rate_hz(options), recording);
   if (const auto read = read_truth(folder, options, recording); !read) return tl::unexpected(read.error());

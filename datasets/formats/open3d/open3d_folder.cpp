@@ -57,19 +57,14 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   return calibration;
 }
 
-/// The value of `key`, from least to most; nothing if it is not there.
-Result<std::optional<double>> number_within(const nlohmann::json& document, const std::string& key,
-                                            double least, double most, const fs::path& file) {
-  if (!document.contains(key)) return std::optional<double>();
-  const auto number = reading::json_number(document, key, file);
-  if (!number) return tl::unexpected(number.error());
-  if (*number >= least && *number <= most) return std::optional(*number);
-  return fail(ErrorCode::data_corrupt,
-              fmt::format("{}: {} = {} (allowed: {} to {})", file.string(), key, *number, least, most));
-}
-
+/// Nothing if it is not there.
 Result<std::optional<double>> depth_scale(const nlohmann::json& document, const fs::path& file) {
-  return number_within(document, "depth_scale", 1e-3, 1e6, file);
+  if (!document.contains("depth_scale")) return std::optional<double>();
+  const auto scale = reading::json_number(document, "depth_scale", file);
+  if (!scale) return tl::unexpected(scale.error());
+  if (calibration::is_units_per_metre(*scale)) return std::optional(*scale);
+  return calibration::no_units_per_metre(ErrorCode::data_corrupt,
+                                         fmt::format("{}: depth_scale", file.string()), *scale);
 }
 
 /// Properties of the recording that its files give beside the camera's matrix.
@@ -89,7 +84,7 @@ Result<Published> read_published(const fs::path& folder, recording::Recording& r
     const auto scale = depth_scale(*document, *file);
     if (!scale) return tl::unexpected(scale.error());
     of_recorder = *scale;
-    const auto rate_hz = number_within(*document, "fps", 1, 1000, *file);
+    const auto rate_hz = reading::json_frame_rate(*document, *file, recording.warnings);
     if (!rate_hz) return tl::unexpected(rate_hz.error());
     published.rate_hz = *rate_hz;
     reading::warn_of_unused_keys(*document, kRecorderKeys, *file, recording.warnings);

@@ -24,7 +24,7 @@ Result<calibration::FrameTree> read_transforms(const std::filesystem::path& file
     if (!child) return tl::unexpected(child.error());
     const auto rows = yaml->numbers(item + "matrix.data", 16);
     if (!rows) return tl::unexpected(rows.error());
-    const auto T_parent_child = calibration::rigid_transform(std::span(*rows).first<12>());
+    const auto T_parent_child = calibration::rigid_transform(std::span(*rows).first<16>());
     if (!T_parent_child) {
       return yaml->fail_at(item + "matrix.data", fmt::format("the matrix is no rigid transform ({})",
                                                              calibration::kRigidTransformRule));

@@ -119,12 +119,9 @@ Result<Record3dMetadata> read_record3d_metadata(const std::filesystem::path& fil
   if (const auto taken = take_frame_cameras(*document, file, metadata, warnings); !taken)
     return tl::unexpected(taken.error());
   reading::warn_of_unused_keys(*document, kKnownKeys, file, warnings);
-  if (document->contains("fps")) {
-    const auto fps = reading::json_number(*document, "fps", file);
-    if (!fps) return tl::unexpected(fps.error());
-    if (!(*fps >= 1 && *fps <= 1000)) return wrong(file, fmt::format("fps = {} (allowed 1 .. 1000)", *fps));
-    metadata.fps = *fps;
-  }
+  const auto fps = reading::json_frame_rate(*document, file, warnings);
+  if (!fps) return tl::unexpected(fps.error());
+  metadata.fps = *fps;
   auto times_ns = read_times(*document, file);
   if (!times_ns) return tl::unexpected(times_ns.error());
   metadata.timestamps_ns = std::move(*times_ns);

@@ -58,11 +58,12 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
                   fmt::format("{}: w = {}, h = {} (allowed: whole numbers from 1 to {})", file.string(), w, h,
                               kMostPixels));
   }
-  if (!(fx_px > 0 && fy_px > 0 && scale >= 1e-3 && scale <= 1e6))
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("{}: fx = {}, fy = {}, scale = {} (allowed: focal lengths above 0, scale 0.001 to 1e6)",
-                    file.string(), fx_px, fy_px, scale));
+  if (!(fx_px > 0 && fy_px > 0))
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: fx = {}, fy = {} (allowed: above 0)", file.string(), fx_px, fy_px));
+  if (!calibration::is_units_per_metre(scale))
+    return calibration::no_units_per_metre(ErrorCode::data_corrupt, fmt::format("{}: scale", file.string()),
+                                           scale);
   calibration::RigCalibration calibration;
   calibration.color.pinhole = {static_cast<int>(w), static_cast<int>(h), fx_px, fy_px, cx_px, cy_px};
   calibration.depth_units_per_metre = scale;
@@ -77,7 +78,7 @@ Result<void> read_truth(const fs::path& folder, double rate_hz, recording::Recor
   const auto row = [&](const io::TextTable& table) -> Result<void> {
     std::array<double, 16> m{};
     if (auto read = table.numbers(0, m); !read) return read;
-    const auto pose = calibration::rigid_transform(std::span<const double, 16>(m).first<12>());
+    const auto pose = calibration::rigid_transform(m);
     if (!pose)
       return table.fail_here(
           fmt::format("the pose is no rigid transform ({})", calibration::kRigidTransformRule));

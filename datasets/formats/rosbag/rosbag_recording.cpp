@@ -35,11 +35,6 @@ struct BagImages {
   bool depth_is_compressed = false;
 };
 
-bool same_pinhole(const PinholeCamera& a, const PinholeCamera& b) {
-  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px && a.fy_px == b.fy_px &&
-         a.cx_px == b.cx_px && a.cy_px == b.cy_px;
-}
-
 bool is_aligned(const std::string& topic) {
   return topic.find("aligned") != std::string::npos || topic.find("registered") != std::string::npos;
 }
@@ -65,7 +60,7 @@ Result<std::optional<calibration::DepthCamera>> depth_camera(const BagTopics& to
   const auto found = camera_of_topic(topics, chosen.depth);
   if (!found && !is_aligned(chosen.depth)) return tl::unexpected(in_bag(file, found.error()));
   const auto info = found.value_or(std::nullopt);
-  const bool one_camera = info && same_pinhole(info->pinhole, color) &&
+  const bool one_camera = info && info->pinhole == color &&
                           topics.images.at(chosen.color).frame_id == topics.images.at(chosen.depth).frame_id;
   if (is_aligned(chosen.depth) || one_camera) return std::nullopt;
   const auto T_color_depth = color_from_depth(topics, chosen);

@@ -62,11 +62,6 @@ Result<SE3> device_from_camera(const fs::path& folder, const char* name) {
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has numbers that are not finite", file->string()));
 }
 
-bool same_camera(const PinholeCamera& a, const PinholeCamera& b) {
-  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px && a.fy_px == b.fy_px &&
-         a.cx_px == b.cx_px && a.cy_px == b.cy_px;
-}
-
 Result<calibration::RigCalibration> published_calibration(const fs::path& folder,
                                                           const reading::NumberedFrame& first) {
   const auto color_size = images::read_image_size(first.color_file);
@@ -94,7 +89,7 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
   const auto T_device_depth = device_from_camera(folder, "extrinsic_depth.txt");
   if (!T_device_depth) return tl::unexpected(T_device_depth.error());
   const SE3 T_color_depth = T_device_color->inverse() * *T_device_depth;
-  if (!same_camera(*color, *depth) || pose_minus(T_color_depth, SE3{}).norm() > kSameTransform)
+  if (*color != *depth || pose_minus(T_color_depth, SE3{}).norm() > kSameTransform)
     calibration.depth = calibration::DepthCamera{*depth, T_color_depth};
   return calibration;
 }

@@ -59,11 +59,6 @@ Result<SensFile> read_file(const fs::path& path) {
   return file;
 }
 
-bool same_camera(const PinholeCamera& a, const PinholeCamera& b) {
-  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px && a.fy_px == b.fy_px &&
-         a.cx_px == b.cx_px && a.cy_px == b.cy_px;
-}
-
 Result<calibration::RigCalibration> calibration_of(const SensFile& file) {
   const SensHeader& header = file.header;
   for (const PinholeCamera* camera : {&header.color, &header.depth}) {
@@ -85,7 +80,7 @@ Result<calibration::RigCalibration> calibration_of(const SensFile& file) {
   calibration.color.timing = calibration::kUnknownTiming;
   calibration.source = "the header of the .sens file";
   const SE3 T_color_depth = header.T_rig_color->inverse() * *header.T_rig_depth;
-  if (!same_camera(header.color, header.depth) || pose_minus(T_color_depth, SE3{}).norm() > kSameTransform)
+  if (header.color != header.depth || pose_minus(T_color_depth, SE3{}).norm() > kSameTransform)
     calibration.depth = calibration::DepthCamera{header.depth, T_color_depth};
   return calibration;
 }

@@ -32,17 +32,15 @@ calibration::RigCalibration published_calibration() {
   return *std::move(calibration);
 }
 
-bool same_camera(const PinholeCamera& a, const PinholeCamera& b) {
-  return a.fx_px == b.fx_px && a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px;
-}
-
 Result<calibration::RigCalibration> calibration_of(const std::filesystem::path& folder) {
   calibration::RigCalibration published = published_calibration();
   const std::filesystem::path file = folder / "camera-intrinsics.txt";
   if (!io::is_named(file)) return published;
   const auto camera = reading::read_camera_matrix(file);
   if (!camera) return tl::unexpected(camera.error());
-  if (same_camera(*camera, published.depth->pinhole)) return published;
+  PinholeCamera without_size = published.depth->pinhole;
+  without_size.width_px = without_size.height_px = 0;
+  if (*camera == without_size) return published;
   calibration::RigCalibration one_camera;
   one_camera.color.pinhole = *camera;
   one_camera.color.timing = calibration::kUnknownTiming;

@@ -16,7 +16,9 @@
 
 #include "core/base/printable.hpp"
 #include "core/base/upper_median.hpp"
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
+#include "core/io/row_text.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/reading/numbered_frames.hpp"
 #include "datasets/recording/sensor_columns.hpp"
@@ -26,39 +28,23 @@ namespace fusebench::formats::stray {
 namespace {
 
 constexpr double kStandardGravity_mps2 = 9.80665;
-constexpr std::size_t kMostColumns = 64;
-
-/// The names of the first line, as columns of a table; empty if there is no such line.
-std::string column_names(const std::filesystem::path& file) {
-  std::string line(io::TextTable::kMaxLineLength, '\0');
-  std::ifstream stream = io::input_file(file);
-  stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
-  line.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 1)) - 1);
-  std::vector<std::string_view> fields;
-  io::split_fields(line, fields);
-  std::string names;
-  for (std::size_t column = 0; column < std::min(fields.size(), kMostColumns); ++column)
-    names += fmt::format("{}c{}", column == 0 ? "" : " ", column);
-  return names;
-}
 
 /// Calls use for each row after the line of names, whose first columns must be `columns`; the rest of the
 /// names goes to `others`.
 Result<void> for_each_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
                           std::vector<std::string>& others,
                           const std::function<Result<void>(const io::TextTable&)>& use) {
-  const std::string names = column_names(file);
-  auto table = io::TextTable::open(file, names.empty() ? "timestamp" : names);
+  std::ifstream stream = io::input_file(file);
+  std::string first;
+  static_cast<void>(io::next_line(stream, first));
+  const std::vector<std::string> names = io::column_names(first);
+  auto table = io::TextTable::open(file, names.empty() ? "timestamp" : io::as_columns(names));
   if (!table) return tl::unexpected(table.error());
-  const auto first = table->next();
-  if (!first) return tl::unexpected(first.error());
-  bool named = *first;
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    named = named && table->has(k) && table->text(k) == columns[k];
-  if (!named)
+  table->leave_out_line(1);
+  if (names.size() < columns.size() || !std::ranges::equal(columns, std::span(names).first(columns.size())))
     return fail(ErrorCode::data_corrupt, fmt::format("{}:1: expected the line of names that begins with: {}",
                                                      file.string(), fmt::join(columns, ", ")));
-  for (std::size_t k = columns.size(); table->has(k); ++k) others.emplace_back(table->text(k));
+  others.assign(names.begin() + std::ssize(columns), names.end());
   std::size_t rows = 0;
   for (; true; ++rows) {
     const auto got = table->next();

@@ -15,7 +15,7 @@ Result<std::vector<recording::AccelerometerSample>> read_tum_accelerometer(
     return {};
   };
   const Result<void> done =
-      io::for_each_stamped_row(file, "timestamp ax ay az", io::TimeOrder::increasing, row, warnings);
+      io::for_each_stamped_row(file, "timestamp ax ay az ...", io::TimeOrder::increasing, row, warnings);
   if (!done) return tl::unexpected(done.error());
   return samples;
 }

@@ -45,9 +45,11 @@ bool has_both_lists(const std::filesystem::path& folder) {
 }
 
 /// The lists of pairs in a folder (associations.txt of ORB-SLAM, output of TUM's associate.py), by name:
-/// those whose first row has two images with times.
+/// those whose first row has two images with times. A list with more columns counts where none is plain,
+/// since it may have been made from the plain one.
 std::vector<std::filesystem::path> lists_of_pairs(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> lists;
+  std::vector<std::filesystem::path> plain;
+  std::vector<std::filesystem::path> wider;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
@@ -55,8 +57,9 @@ std::vector<std::filesystem::path> lists_of_pairs(const std::filesystem::path& f
     if (!may_be) continue;
     const auto row = reading::first_associated_row(entry.path());
     if (row && io::parse_time_ns(row->color_stamp) && io::parse_time_ns(row->depth_stamp))
-      lists.push_back(entry.path());
+      (row->has_more_columns ? wider : plain).push_back(entry.path());
   }
+  std::vector<std::filesystem::path> lists = plain.empty() ? std::move(wider) : std::move(plain);
   std::ranges::sort(lists);
   return lists;
 }

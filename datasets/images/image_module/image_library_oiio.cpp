@@ -30,7 +30,7 @@ LibraryResult<void> read_pixels(OIIO::ImageInput& input, int channels, std::span
   const OIIO::TypeDesc type = read_type_of(spec);
   // An image may have a depth in addition to width and height.
   if (pixels.size() != spec.image_pixels() * static_cast<std::uint64_t>(channels) * type.size())
-    return tl::unexpected(std::string("it has other pixels than its width and height say"));
+    return tl::unexpected(std::string("its pixels do not match its width and height"));
   if (!input.read_image(0, 0, 0, channels, type, pixels.data())) return tl::unexpected(input.geterror());
   return {};
 }

@@ -70,7 +70,7 @@ Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& 
       return fail(ErrorCode::data_corrupt,
                   fmt::format("{}: a vertex at {}, {}, {} m (allowed -1e6 .. 1e6; metres_per_unit = {})",
                               file.string(), vertex.x(), vertex.y(), vertex.z(), options.metres_per_unit),
-                  "a scene lies near the origin; check its unit");
+                  "a scene must be near the origin; check its unit");
     }
     if (options.y_up) vertex = Eigen::Vector3f(vertex.x(), -vertex.z(), vertex.y());
     bounds.extend(vertex.cast<double>());

@@ -10,15 +10,15 @@
 #include <csignal>
 #include <cstdio>
 
+#include "eval/cli/console/progress.hpp"
 #include "eval/record/truth_contradiction.hpp"
 #include "eval/text/control_characters.hpp"
-#include "eval/text/text_layout.hpp"
 
 namespace fusebench::cli::console {
 
 namespace {
 
-/// Whether standard output is a pipe that nobody reads any more.
+/// Whether standard output is a pipe without a reader.
 bool reader_has_left() {
   pollfd output{STDOUT_FILENO, POLLOUT, 0};
   return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
@@ -39,16 +39,11 @@ void prepare_standard_streams() {
 }
 
 void print_error(const Error& error) {
-  print_status(fmt::format("error: {}\n", text::without_controls(error.message)));
-  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", text::without_controls(error.hint)));
+  write_error(fmt::format("error: {}\n", text::without_controls(error.message)));
+  if (!error.hint.empty()) write_error(fmt::format("  hint: {}\n", text::without_controls(error.hint)));
 }
 
-void print_status(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
-}
-
-void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print_output(std::string_view text) { write_output(text); }
 
 bool output_arrived() {
   const bool flushed = std::fflush(stdout) == 0;
@@ -58,34 +53,15 @@ bool output_arrived() {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
-  print_error({ErrorCode::io, "standard output cannot be written", "is there room where it goes to?"});
+  print_error(
+      {ErrorCode::io, "standard output cannot be written", "is there free space at its destination?"});
   return false;
 }
 
-void print_progress(std::string_view line) {
-  print_status(fmt::format("{}\n", text::without_controls(line)));
-}
+void print_progress(std::string_view line) { write_error(fmt::format("{}\n", text::without_controls(line))); }
 
 void print_warnings(std::span<const std::string> warnings) {
   for (const std::string& warning : warnings) print_progress("warning: " + warning);
-}
-
-ProgressBar::ProgressBar(std::string title)
-    : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-void ProgressBar::show(std::size_t done, std::size_t total) {
-  if (!terminal_ || total == 0) return;
-  const std::size_t percent = 100 * done / total;
-  if (percent == last_percent_) return;
-  last_percent_ = percent;
-  constexpr std::size_t kWidth = 30;
-  const std::size_t filled = kWidth * done / total;
-  print_status(fmt::format("\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
-                           std::string(kWidth - filled, '.'), done, total));
-}
-
-void ProgressBar::clear() {
-  if (terminal_) print_status("\r\033[K");
 }
 
 std::string summary_line(const record::RunRecord& record) {
@@ -102,7 +78,7 @@ std::string summary_line(const record::RunRecord& record) {
   line += fmt::format("{}/{} frames", record.frames.tracked, record.frames.total);
   if (const std::string segments = record::segments_text(record.frames); !segments.empty())
     line += ", " + segments;
-  // Nobody timed what was imported.
+  // Imported runs have no times.
   if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
     line += fmt::format(", {} undetected failures", silent);

@@ -1,10 +1,8 @@
-// What the command line shows: errors and progress on standard error, results on standard output.
+// Output of the command line: errors and messages on standard error, results on standard output.
 //
-// Nothing that cannot be shown on standard error ends a verb: it is left out, be the disk full, the
-// descriptor closed, or the reader of a pipe gone.
+// Errors of writing to standard error (full disk, closed descriptor, pipe without a reader) are ignored.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,9 +14,9 @@ namespace fusebench::cli::console {
 
 inline constexpr int kExitRunFailed = 4;
 
-/// First of all in a process. A standard descriptor that the caller closed would be given to the first file
-/// that is opened, and that file then hold what is printed: each is opened on /dev/null instead, standard
-/// output so that writing to it fails. A pipe without a reader is an error of writing, no signal.
+/// Call first in a process. Opens closed standard descriptors on /dev/null, because the first opened file
+/// would otherwise get the number and the printed text; writing to such a standard output fails. A pipe
+/// without a reader is an error of writing, not a signal.
 void prepare_standard_streams();
 
 /// "error: <sentence>" and "  hint: ..." on standard error.
@@ -29,22 +27,8 @@ void print_output(std::string_view text);  ///< standard output
 [[nodiscard]] bool output_arrived();
 void print_progress(std::string_view line);                  ///< a line on standard error
 void print_warnings(std::span<const std::string> warnings);  ///< a line each: "warning: ..."
-void print_status(std::string_view text);  ///< on standard error, as it is: of a line that is redrawn
 
-/// A bar that redraws itself on a terminal, and is silent elsewhere.
-class ProgressBar {
- public:
-  explicit ProgressBar(std::string title);
-  void show(std::size_t done, std::size_t total);
-  void clear();
-
- private:
-  std::string title_;
-  bool terminal_;
-  std::size_t last_percent_ = 101;
-};
-
-/// "AIE 8.123, ATE 2.31 cm, 240/240 frames, 31.2 fps"; what a run without these says instead.
+/// "AIE 8.123, ATE 2.31 cm, 240/240 frames, 31.2 fps", as far as the run has these values.
 [[nodiscard]] std::string summary_line(const record::RunRecord& record);
 
 }  // namespace fusebench::cli::console

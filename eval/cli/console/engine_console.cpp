@@ -1,10 +1,12 @@
 #include "eval/cli/console/engine_console.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
+#include "eval/cli/console/console.hpp"
 #include "eval/engine/simulated_recordings.hpp"
 #include "eval/record/record.hpp"
 #include "eval/text/text_layout.hpp"
@@ -13,7 +15,7 @@ namespace fusebench::cli::console {
 
 namespace {
 
-constexpr std::size_t kMostRows = 50;  // of runs that were there already, told one by one
+constexpr std::size_t kMostRows = 50;  // of finished runs that are listed one by one
 
 std::string ending_of(const engine::BatchOutcome& outcome) {
   if (outcome.skipped) return "skipped: " + outcome.reason;
@@ -25,36 +27,27 @@ std::string ending_of(const engine::BatchOutcome& outcome) {
 
 }  // namespace
 
-EngineConsole::EngineConsole(std::span<const engine::BatchJob> jobs)
-    : jobs_(jobs), terminal_(isatty(STDERR_FILENO) == 1) {}
+EngineConsole::EngineConsole(std::span<const engine::BatchJob> jobs) : jobs_(jobs) {}
 
 engine::EngineControl EngineConsole::control() {
   return {[this](std::size_t index, const engine::BatchOutcome& outcome) { tell(index, outcome); },
           [this](const engine::EngineState& state) { show(state); }, &stop_requested()};
 }
 
-void EngineConsole::clear() {
-  if (terminal_) print_status("\r\033[K");
-}
-
 void EngineConsole::tell(std::size_t index, const engine::BatchOutcome& outcome) {
-  if (outcome.resumed && outcome.skipped) return;  // was not asked for
+  if (outcome.resumed && outcome.skipped) return;  // not selected
   ++told_;
   if (outcome.resumed && ++resumed_ > kMostRows) return;
-  clear();
   const bool more = outcome.resumed && resumed_ == kMostRows;
   print_progress(fmt::format("[{}/{}] {}: {}{}{}", told_, jobs_.size(), engine::to_string(jobs_[index]),
                              outcome.resumed && !outcome.skipped ? "(was there) " : "", ending_of(outcome),
-                             more ? "; others that were there are not told" : ""));
+                             more ? "; further finished runs are not listed" : ""));
 }
 
 void EngineConsole::show(const engine::EngineState& state) {
-  if (!terminal_) return;
   std::string line = fmt::format("[{}/{}] {}", state.ended, state.jobs, rate_text(state));
   for (const std::string& job : state.running) line += " | " + job;
-  constexpr std::size_t kWidth = 150;
-  if (line.size() > kWidth) line = line.substr(0, kWidth - 3) + "...";
-  print_status(fmt::format("\r\033[K{}", line));
+  progress_.say(std::move(line));
 }
 
 std::string rate_text(const engine::EngineState& state) {
@@ -69,20 +62,17 @@ std::string rate_text(const engine::EngineState& state) {
 
 Result<void> simulate_missing(const std::vector<engine::BatchJob>& jobs, int threads) {
   std::string title;
-  ProgressBar bar("");
+  std::optional<Progress> progress;
   engine::SimulatingControl control;
   control.started = [&](const std::string& name, std::size_t index, std::size_t count) {
     title = fmt::format("[{}/{}] simulating {}", index + 1, count, name);
-    bar = ProgressBar(title);
+    progress.emplace(title);
   };
-  control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
+  control.progress = [&](std::size_t done, std::size_t total) { progress->show(done, total); };
   control.finished = [&](const std::vector<std::string>& lines) {
-    bar.clear();
     for (const std::string& line : lines) print_progress(fmt::format("{}: {}", title, line));
   };
-  auto made = engine::make_simulated_recordings(jobs, threads, control);
-  bar.clear();
-  return made;
+  return engine::make_simulated_recordings(jobs, threads, control);
 }
 
 }  // namespace fusebench::cli::console

@@ -1,5 +1,4 @@
-// What an engine shows while it works: one line that is redrawn on a terminal, one line a finished run
-// elsewhere.
+// What an engine shows while it works: a line for each finished run, and the runs in progress (progress.hpp).
 #pragma once
 
 #include <cstddef>
@@ -7,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "eval/cli/console/console.hpp"
+#include "core/base/error.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/stop_signals.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/local_engine.hpp"
@@ -18,7 +18,6 @@ class EngineConsole {
  public:
   explicit EngineConsole(std::span<const engine::BatchJob> jobs);
   [[nodiscard]] engine::EngineControl control();
-  void clear();
 
  private:
   void tell(std::size_t index, const engine::BatchOutcome& outcome);
@@ -26,7 +25,7 @@ class EngineConsole {
 
   StopScope stopping_{OnStop::end_itself};
   std::span<const engine::BatchJob> jobs_;
-  bool terminal_;
+  Progress progress_{"runs"};
   std::size_t told_ = 0;
   std::size_t resumed_ = 0;
 };
@@ -34,7 +33,7 @@ class EngineConsole {
 /// "3 failed, 12.5 runs/min, 35 min left"
 [[nodiscard]] std::string rate_text(const engine::EngineState& state);
 
-/// Makes the simulated recordings that the jobs need and that are not there.
+/// Simulates missing recordings of the jobs.
 [[nodiscard]] Result<void> simulate_missing(const std::vector<engine::BatchJob>& jobs, int threads);
 
 }  // namespace fusebench::cli::console

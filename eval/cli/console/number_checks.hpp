@@ -1,5 +1,4 @@
-// Ranges of numbers, and ranges without an upper end, of which the parser's own messages would print all 309
-// digits.
+// Checks of number ranges, also without an upper end, with short messages.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,7 +33,7 @@ template <class Allows>
   return detail::number_check("above 0", "POSITIVE", [](double value) { return value > 0; });
 }
 
-/// Both ends are allowed. CLI11's own check asks whether a number is beyond an end, which "nan" never is.
+/// Both ends are allowed. CLI11's own check accepts "nan".
 [[nodiscard]] inline CLI::Validator number_range(double least, double most) {
   const CLI::Range range(least, most);
   CLI::Validator strict = range;
@@ -46,7 +45,7 @@ template <class Allows>
   return strict;
 }
 
-/// Of stamps and differences of them, seconds: what is held in nanoseconds, with room for a sum of two.
+/// Stamps and their differences in seconds, so that a sum of two fits 64-bit nanoseconds.
 [[nodiscard]] inline CLI::Validator stamp_range() {
   constexpr double kMost_s = 4e9;
   return detail::number_check("-4e9 to 4e9", "-4e9 TO 4e9",

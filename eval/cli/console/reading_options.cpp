@@ -24,10 +24,9 @@ void add_reading_options(CLI::App& verb, ReadingOptions& options, const std::str
           "Largest difference between a colour image and its depth image, where they are paired by time")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option(
-          "--frame-rate", options.frame_rate_hz,
-          "Images a second of recordings without stamps (icl, 7scenes, open3d, ...); default: what the "
-          "recording says, else 30")
+  verb.add_option("--frame-rate", options.frame_rate_hz,
+                  "Images a second of recordings without stamps (icl, 7scenes, open3d, ...); default: the "
+                  "recording's value, else 30")
       ->type_name("HZ");
   verb.add_flag("--published-stamps", options.published_stamps,
                 "Images were taken at their stamps: no jitter is removed");

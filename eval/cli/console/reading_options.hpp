@@ -1,4 +1,4 @@
-// How a recording is to be read, as verbs that open one take it.
+// Options of the verbs that open a recording.
 #pragma once
 
 #include <filesystem>
@@ -27,11 +27,11 @@ struct ReadingOptions {
 };
 
 /// --calibration, --camera, --format, --depth-units, --max-difference, --frame-rate, --published-stamps,
-/// --filtered-depth. format_flag: for a verb whose --format is that of what it writes.
+/// --filtered-depth. format_flag: another name for --format in verbs whose --format is that of their output.
 void add_reading_options(CLI::App& verb, ReadingOptions& options,
                          const std::string& format_flag = "--format");
 
-/// Errors: an unknown camera (configuration), and those of read_calibration. Ranges are checked by the
+/// Errors: configuration for an unsupported camera, and those of read_calibration. Ranges are checked by the
 /// reader.
 [[nodiscard]] Result<datasets::OpenOptions> open_options(const ReadingOptions& options);
 

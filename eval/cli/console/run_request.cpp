@@ -14,8 +14,8 @@ void add_run_request(CLI::App& verb, RunRequest& request) {
       ->required();
   add_variant_option(verb, request.variant);
   verb.add_option("--imu", request.imu,
-                  "Inertial samples for variants that need them: recorded, synthetic (made from the ground "
-                  "truth and labelled so), or auto (recorded where there are any)")
+                  "Inertial samples of variants with an IMU: recorded, synthetic (made from the ground "
+                  "truth, and labelled), or auto (recorded if there are any)")
       ->check(CLI::IsMember({"recorded", "synthetic", "auto"}))
       ->capture_default_str();
   add_set_option(verb, request.sets);

@@ -1,4 +1,4 @@
-// What to run, as the verbs that run the estimator over one recording take it: declared and understood once.
+// Options of the verbs that run the estimator over one recording.
 #pragma once
 
 #include <filesystem>

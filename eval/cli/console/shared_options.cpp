@@ -24,7 +24,7 @@ void add_threads_option(CLI::App& verb, int& threads) {
 }
 
 void add_set_option(CLI::App& verb, std::vector<std::string>& sets) {
-  verb.add_option("--set", sets, "Sets one option, e.g. iekf.max_iterations=8; may be repeated")
+  verb.add_option("--set", sets, "Sets one option, e.g. iekf.max_iterations=8; repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -42,7 +42,7 @@ void add_variant_option(CLI::App& verb, std::string& variant) {
 
 void add_profile_flag(CLI::App& verb, bool& profile) {
   verb.add_flag("--profile", profile,
-                "Also writes how long each stage of each frame took: trace.json for chrome://tracing and "
+                "Also writes the duration of each stage of each frame: trace.json for chrome://tracing and "
                 "ui.perfetto.dev, and histograms in record.json. Results do not depend on it");
 }
 

@@ -1,4 +1,4 @@
-// Enough stack for the filter's matrices, whatever the limit of the shell.
+// Enough stack for the filter's matrices, independent of the limit of the shell.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@ namespace fusebench::cli::console {
 
 /// Calls the function and returns its result. Where the stack of the process is limited to less than
 /// kLeastStackBytes (`ulimit -s`), this happens in a thread with a stack of kLargeStackBytes, and threads
-/// that are created later get as much. If there is no memory for that, a warning says so. The function must
+/// that are created later get as much. Without memory for that, prints a warning. The function must
 /// not throw.
 int call_with_enough_stack(const std::function<int()>& function);
 

@@ -1,17 +1,17 @@
-// What Ctrl-C (SIGINT) and SIGTERM do.
+// Handling of Ctrl-C (SIGINT) and SIGTERM.
 #pragma once
 
 #include <atomic>
 
 namespace fusebench::cli::console {
 
-inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
+inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as in shells
 
 /// How the process ends at a signal, always with kExitInterrupted.
 enum class OnStop {
   end,         ///< at once, without its temporary files
   end_soon,    ///< the work checks stop_requested(); as with `end` if it does not stop within kMostStop_s
-  end_itself,  ///< the work checks stop_requested(), stops its child processes and keeps what is finished
+  end_itself,  ///< the work checks stop_requested(), stops its child processes and keeps finished results
 };
 
 inline constexpr double kMostStop_s = 0.7;
@@ -22,7 +22,7 @@ void handle_stop_signals();
 /// Set by a signal within a StopScope.
 [[nodiscard]] const std::atomic<bool>& stop_requested();
 
-/// Another way to end for as long as this lives, in one thread of the process. A third signal ends the
+/// Changes OnStop while this lives. Only one may live at a time. A third signal ends the
 /// process at once in any case.
 class StopScope {
  public:

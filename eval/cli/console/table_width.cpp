@@ -12,7 +12,7 @@ namespace fusebench::cli::console {
 
 namespace {
 
-constexpr std::size_t kUsualWidth = 100;  // of a terminal that does not tell, as a serial line
+constexpr std::size_t kUsualWidth = 100;  // of a terminal without a size, such as a serial line
 constexpr int kWidestLine = 10000;
 
 std::size_t terminal_width() {
@@ -29,11 +29,10 @@ std::size_t terminal_width() {
 }  // namespace
 
 void add_width_option(CLI::App& verb, std::optional<std::size_t>& width) {
-  verb.add_option(
-          "--width", width,
-          "Text tables: characters of a line. Longer cells go on below, and what is still wider stands in "
-          "blocks of columns; 0: never. Default: the terminal's width; 0 elsewhere, or if Markdown is "
-          "asked for")
+  verb.add_option("--width", width,
+                  "Width of text tables in characters: longer cells continue on the next line, and wider "
+                  "tables are split into blocks of columns; 0: no limit. Default: the terminal's width; 0 "
+                  "elsewhere and for Markdown")
       ->check(CLI::Range(0, kWidestLine))
       ->type_name("N");
 }

@@ -1,4 +1,4 @@
-// How wide the text tables of a verb may be: what does not fit is folded (eval/text/folded_table.hpp).
+// The width of text tables; wider ones are folded (eval/text/folded_table.hpp).
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,8 @@ namespace fusebench::cli::console {
 /// --width
 void add_width_option(CLI::App& verb, std::optional<std::size_t>& width);
 
-/// Characters of a line; 0: any number. Without --width, those of the terminal that standard output is: as it
-/// says itself, else as COLUMNS says, else 100. Any number where that is none, and of a format that was asked
-/// for by its name: who names Markdown is going to copy it.
+/// Characters of a line; 0: any number. Without --width: of a terminal its own width, else COLUMNS,
+/// else 100; 0 if standard output is no terminal, or if the format was given (Markdown is usually copied).
 [[nodiscard]] std::size_t table_width(const std::optional<std::size_t>& asked, bool format_was_named = false);
 
 }  // namespace fusebench::cli::console

@@ -57,7 +57,7 @@ std::string flag_name(const std::string& argument) {
 }
 
 std::string help_of(const CLI::App& verb) {
-  return fmt::format("`{} --help` says what is allowed", full_name(verb));
+  return fmt::format("`{} --help` lists what is allowed", full_name(verb));
 }
 
 Error unknown_verb(const CLI::App& app, const std::string& name) {
@@ -81,7 +81,7 @@ Error unknown_flag(const CLI::App& verb, const std::string& argument) {
   return {ErrorCode::usage, std::move(message), help_of(verb)};
 }
 
-/// What the arguments say that no verb takes; `verb` becomes the last verb that they name.
+/// The first unsupported verb or flag; `verb` becomes the last verb in the arguments.
 std::optional<Error> not_understood(const CLI::App& program, const std::vector<std::string>& arguments,
                                     const CLI::App*& verb) {
   verb = &program;
@@ -101,7 +101,7 @@ std::optional<Error> not_understood(const CLI::App& program, const std::vector<s
   return std::nullopt;
 }
 
-/// The parser's sentences, told in the words of its user.
+/// The parser's message in the terms of the command line.
 std::string reworded(const CLI::App& verb, const std::string& complaint) {
   std::smatch part;
   if (std::regex_match(complaint, part, std::regex("(.+): At Most (\\d+) required but received (\\d+)")))

@@ -1,5 +1,4 @@
-// What is wrong with a command line, in the words of the command line: the flag that is not understood, and
-// the nearest one that is.
+// Errors of a command line: the unsupported flag or verb, and the nearest supported one.
 #pragma once
 
 #include <optional>
@@ -15,13 +14,13 @@ class ParseError;
 
 namespace fusebench::cli::console {
 
-/// The error of arguments (without the program's name) that `program` did not take: the first verb or flag
-/// that it does not know, else what the parser complains of.
+/// The error of arguments (without the program's name) that `program` rejected: the first unsupported verb or
+/// flag, else the parser's error.
 [[nodiscard]] Error usage_error(const CLI::App& program, const std::vector<std::string>& arguments,
                                 const CLI::ParseError& complaint);
 
-/// The first verb or flag of arguments (without the program's name) that `program` does not know. The parser
-/// itself does not complain of them where help is asked for.
+/// The first verb or flag of arguments (without the program's name) that `program` does not have. The parser
+/// does not report these if help is requested.
 [[nodiscard]] std::optional<Error> unknown_words(const CLI::App& program,
                                                  const std::vector<std::string>& arguments);
 

@@ -1,5 +1,5 @@
-// A verb of the command line: it adds its options to the application and says what to do when it was chosen:
-// an exit code, or an error that main() prints.
+// A verb of the command line: its parser, and the function that runs it, which returns an exit code or an
+// error that main() prints.
 #pragma once
 
 #include <functional>
@@ -15,6 +15,7 @@ namespace fusebench::cli::console {
 struct Verb {
   CLI::App* app = nullptr;
   std::function<Result<int>()> run;
+  bool forks = false;  ///< runs work in forked processes, so that no Heartbeat may live around it
 };
 
 }  // namespace fusebench::cli::console

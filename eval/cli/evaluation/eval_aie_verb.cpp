@@ -9,6 +9,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -37,7 +38,7 @@ Result<std::vector<pose_intensity::NamedTrajectory>> load_all(const AieOptions& 
   if (options.truth) {
     if (recording.ground_truth.empty())
       return fail(ErrorCode::data_missing, fmt::format("{} has no ground truth", recording.name),
-                  "leave --truth out");
+                  "omit --truth");
     // At the instants of the images, under their stamps.
     trajectories.push_back(
         {"ground truth", record::true_trajectory(recording, record::frame_stamps(recording))});
@@ -86,13 +87,14 @@ std::string to_json(const pose_intensity::PoseIntensity& result) {
 Result<int> run(const AieOptions& options) {
   const auto open = console::open_options(options.reading);
   if (!open) return tl::unexpected(open.error());
+  console::Progress progress("opening " + options.recording.string());
   const auto recording = datasets::open_recording(options.recording, *open);
   if (!recording) return tl::unexpected(recording.error());
   const auto trajectories = load_all(options, *recording);
   if (!trajectories) return tl::unexpected(trajectories.error());
   if (trajectories->empty())
-    return fail(ErrorCode::usage, "no trajectory is given",
-                "name files, or take the recording's own with --truth");
+    return fail(ErrorCode::usage, "no trajectory is given", "pass files, or --truth for the recording's own");
+  progress.say(fmt::format("comparing the images of {} frames", recording->frames.size()));
   const pose_intensity::ProbeOptions probes{.true_depth = options.true_depth};
   const auto result = pose_intensity::pose_intensity(*recording, *trajectories, probes);
   if (!result) return tl::unexpected(result.error());
@@ -109,14 +111,14 @@ console::Verb add_eval_aie_verb(CLI::App& eval) {
       "Intensity error of poses alone: the same probe patches of a recording for trajectories of any system");
   verb->add_option("RECORDING", options->recording, "Folder of the recording")->required();
   verb->add_option("EST", options->estimates, "Trajectories with stamps (TUM, EuRoC), of the colour camera");
-  verb->add_flag("--truth", options->truth, "And the recording's own ground truth: what no pose removes");
+  verb->add_flag("--truth", options->truth, "Also evaluates the recording's ground truth, the lower limit");
   verb->add_flag("--true-depth", options->true_depth,
-                 "Moves pixels by the true surface in place of the measured depth (simulated recordings)");
+                 "Uses depth of the ground-truth mesh instead of measured depth (simulated recordings)");
   console::add_reading_options(*verb, options->reading);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Only pairs of frames count of which all trajectories have both poses. docs/metrics.md defines the\n"
-      "numbers. Exit code 3 for a recording or a trajectory that cannot be used.");
+      "Only pairs of frames count for which all trajectories have both poses. docs/metrics.md defines "
+      "the\nnumbers. Exit code 3 for a recording or a trajectory that cannot be used.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -101,13 +101,13 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
   std::vector<std::string> modes;
   for (const auto& [name, mode] : kNeesAlignments) modes.emplace_back(name);
   verb->add_option("--align", options->align,
-                   "Alignment of the estimate: none, se3, yaw (and position), or origin (the first pair); a "
-                   "fit hides part of the errors")
+                   "Alignment of the estimate: none, se3, yaw (and position), or origin (the first pair); an "
+                   "alignment reduces the errors")
       ->type_name("MODE")
       ->check(CLI::IsMember(modes))
       ->capture_default_str();
   verb->add_option("--t_max_diff", options->association.max_difference_s,
-                   "The reference is interpolated at the estimate's stamps, in gaps of up to so much")
+                   "The reference is interpolated at the estimate's stamps in gaps up to this")
       ->check(console::not_negative())
       ->type_name("S")
       ->capture_default_str();
@@ -117,11 +117,12 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
       ->capture_default_str();
   verb->add_option("--errors", options->errors, "Writes errors, sigmas and NEES of each pose")
       ->type_name("FILE.csv");
-  verb->add_option("--figures", options->figures,
-                   "Draws errors against 3 sigma by axis, and NEES over time (gnuplot)")
-      ->type_name("DIR");
+  auto* figures = verb->add_option("--figures", options->figures,
+                                   "Draws errors against 3 sigma by axis, and NEES over time (gnuplot)")
+                      ->type_name("DIR");
   verb->add_option("--figure-format", options->figure_format, "svg or pdf")
       ->check(CLI::IsMember({"svg", "pdf"}))
+      ->needs(figures)
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");

@@ -84,20 +84,20 @@ console::Verb add_eval_silent_verb(CLI::App& eval) {
   verb->add_option("GT", options->reference, "Reference with stamps (TUM, EuRoC)")->required();
   verb->add_option("EST", options->estimate, "Estimate with stamps; frames that were lost have no pose in it")
       ->required();
-  verb->add_option("--interval", options->interval_s, "The motion over this long is judged")
+  verb->add_option("--interval", options->interval_s, "Interval of the motion that is compared")
       ->type_name("S")
       ->check(console::positive())
       ->capture_default_str();
-  verb->add_option("--translation", options->translation_m, "It may be off by this much")
+  verb->add_option("--translation", options->translation_m, "Largest error of its translation")
       ->type_name("M")
       ->check(console::positive())
       ->capture_default_str();
-  verb->add_option("--rotation", options->rotation_deg, "And be rotated by this much")
+  verb->add_option("--rotation", options->rotation_deg, "Largest error of its rotation")
       ->type_name("DEG")
       ->check(console::positive())
       ->capture_default_str();
   verb->add_option("--offset", options->offset_m,
-                   "Of the camera in the reference's body, as `eval ate --fit_offset` finds it")
+                   "Position of the camera in the reference's body, as fitted by `eval ate --fit_offset`")
       ->type_name("X Y Z")
       ->expected(3)
       ->capture_default_str();

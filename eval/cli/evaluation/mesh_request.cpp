@@ -21,8 +21,11 @@ namespace fusebench::cli::evaluation {
 namespace {
 
 Result<mesh_error::MeshSampling> sampling_of(const MeshVerbOptions& options) {
+  if (options.samples == "vertices" && options.seed)
+    return fail(ErrorCode::usage, "--seed has no effect with --samples vertices",
+                "--samples N draws N points over the area by it");
   if (options.samples == "vertices") return mesh_error::MeshSampling{mesh_error::MeshSamples::vertices, 0, 0};
-  mesh_error::MeshSampling sampling{mesh_error::MeshSamples::area, 0, options.seed};
+  mesh_error::MeshSampling sampling{mesh_error::MeshSamples::area, 0, options.seed.value_or(1)};
   const char* const end = options.samples.data() + options.samples.size();
   const auto [stop, status] = std::from_chars(options.samples.data(), end, sampling.count);
   constexpr std::size_t kMost = 100'000'000;
@@ -38,11 +41,10 @@ Result<SE3> alignment_of_trajectories(const std::vector<std::filesystem::path>& 
   const auto sides = trajectories::load_sides(files[0], files[1]);
   if (!sides) return tl::unexpected(sides.error());
   constexpr double kMaxGap_s = 0.1;
-  const auto pair =
-      trajectory_files::pair_up(sides->reference.poses, sides->estimate.poses,
-                                {sides->have_stamps() ? trajectory_files::AssociationRule::interpolated
-                                                      : trajectory_files::AssociationRule::index,
-                                 kMaxGap_s});
+  const auto pair = trajectory_files::pair_up(
+      sides->reference.poses, sides->estimate.poses,
+      {sides->have_stamps() ? trajectory_files::AssociationRule::interpolated : sides->rule_without_stamps(),
+       kMaxGap_s});
   if (!pair) return tl::unexpected(pair.error());
   std::vector<SE3> T_truth_camera;
   std::vector<SE3> T_estimate_camera;
@@ -57,16 +59,17 @@ Result<void> set_alignment(const MeshVerbOptions& options, mesh_error::MeshReque
   const bool file = !options.transform.empty();
   const bool trajectories = !options.trajectories.empty();
   if (file && trajectories)
-    return fail(ErrorCode::usage, "--transform and --trajectories both say where the reconstruction is");
+    return fail(ErrorCode::usage, "--transform and --trajectories exclude each other");
   if (options.align == "none" && (file || trajectories)) {
     return fail(
         ErrorCode::usage,
         fmt::format("--align none does not use {}", file ? "--transform" : "--trajectories"),
         fmt::format("--align {} does, and --align icp starts from there", file ? "file" : "trajectory"));
   }
-  if (options.align == "file" && !file) return fail(ErrorCode::usage, "--align file needs --transform FILE");
+  if (options.align == "file" && !file)
+    return fail(ErrorCode::usage, "--align file requires --transform FILE");
   if (options.align == "trajectory" && !trajectories)
-    return fail(ErrorCode::usage, "--align trajectory needs --trajectories TRUTH ESTIMATE");
+    return fail(ErrorCode::usage, "--align trajectory requires --trajectories TRUTH ESTIMATE");
   if (file || trajectories) {
     const auto start = file ? mesh_error::read_transform(options.transform)
                             : alignment_of_trajectories(options.trajectories);
@@ -76,7 +79,7 @@ Result<void> set_alignment(const MeshVerbOptions& options, mesh_error::MeshReque
   if (options.align == "icp")
     request.icp = mesh_error::RegistrationOptions{
         .kept = options.icp_kept.value_or(mesh_error::RegistrationOptions{}.kept)};
-  if (options.icp_kept && !request.icp) return fail(ErrorCode::usage, "--icp-kept is for --align icp");
+  if (options.icp_kept && !request.icp) return fail(ErrorCode::usage, "--icp-kept requires --align icp");
   return {};
 }
 
@@ -90,8 +93,8 @@ mesh_error::Culling culling_of(const std::string& name) {
 Result<void> set_views(const MeshVerbOptions& options, mesh_error::MeshRequest& request) {
   const bool culls = options.cull != "none";
   if (culls != !options.recording.empty()) {
-    return fail(ErrorCode::usage, culls ? fmt::format("--cull {} needs --recording REC", options.cull)
-                                        : "--recording is for --cull frustum, occlusion or depth");
+    return fail(ErrorCode::usage, culls ? fmt::format("--cull {} requires --recording REC", options.cull)
+                                        : "--recording requires --cull frustum, occlusion or depth");
   }
   if (!culls) return {};
   const auto how = console::open_options(options.reading);
@@ -102,14 +105,14 @@ Result<void> set_views(const MeshVerbOptions& options, mesh_error::MeshRequest& 
   if (!recording) return tl::unexpected(recording.error());
   if (recording->ground_truth.empty()) {
     return fail(ErrorCode::data_missing, fmt::format("{} has no ground truth", options.recording),
-                "only true poses tell what of the true surface was seen");
+                "culling requires the camera poses of the ground truth");
   }
   auto views = run::recorded_views(*recording, {options.depth_range_m[0], options.depth_range_m[1],
                                                 culling_of(options.cull), options.cull_every});
   if (!views) return tl::unexpected(views.error());
   if (views->T_truth_camera.empty()) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no frame has ground truth", options.recording),
-                "only true poses tell what of the true surface was seen");
+                "culling requires the camera poses of the ground truth");
   }
   request.views = std::move(*views);
   return {};
@@ -118,7 +121,7 @@ Result<void> set_views(const MeshVerbOptions& options, mesh_error::MeshRequest& 
 /// The parser takes "nan" for a number within any range.
 Result<void> check_numbers(const MeshVerbOptions& options) {
   const auto refuse = [](const char* option) {
-    return fail(ErrorCode::usage, fmt::format("{} needs numbers that are finite", option));
+    return fail(ErrorCode::usage, fmt::format("{} requires finite numbers", option));
   };
   const auto is_finite = [](double value) { return std::isfinite(value); };
   if (!std::ranges::all_of(options.thresholds_m, is_finite)) return refuse("--thresholds");
@@ -126,7 +129,7 @@ Result<void> check_numbers(const MeshVerbOptions& options) {
   if (!is_finite(options.scale.value_or(1))) return refuse("--scale");
   if (!is_finite(options.colored_max_m.value_or(1))) return refuse("--colored-max");
   if (options.colored_max_m && options.colored.empty())
-    return fail(ErrorCode::usage, "--colored-max is for --colored FILE.ply");
+    return fail(ErrorCode::usage, "--colored-max requires --colored FILE.ply");
   if (!is_finite(options.icp_kept.value_or(1))) return refuse("--icp-kept");
   if (!is_finite(options.least_observed)) return refuse("--min-observed");
   if (options.depth_range_m[0] < options.depth_range_m[1]) return {};

@@ -1,4 +1,4 @@
-// From the options of `fusebench eval mesh` to what is to be evaluated.
+// The request of `fusebench eval mesh` from its options.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace fusebench::cli::evaluation {
 
-/// What the command line says.
+/// The options as given.
 struct MeshVerbOptions {
   std::filesystem::path reconstruction;
   std::filesystem::path truth;
@@ -26,7 +26,7 @@ struct MeshVerbOptions {
   std::optional<double> scale;
   std::vector<double> thresholds_m = mesh_error::MeshErrorOptions{}.thresholds_m;
   std::string samples = "200000";
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< 1 if not given
   std::string cull = "none";
   std::string recording;
   std::filesystem::path data;
@@ -40,7 +40,7 @@ struct MeshVerbOptions {
   bool json = false;
 };
 
-/// The request, with the alignment and the views of a recording as far as they are asked for. Errors: usage
+/// The request, with the requested alignment and views of a recording. Errors: usage
 /// for options that do not go together; those of the files that are read; data_missing for a recording
 /// without ground truth.
 [[nodiscard]] Result<mesh_error::MeshRequest> request_of(const MeshVerbOptions& options);

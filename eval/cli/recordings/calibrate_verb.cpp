@@ -13,6 +13,7 @@
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
@@ -43,6 +44,8 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   const auto recording = run::open_window(spec->recording, spec->open, spec->frames);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
+  const console::Progress progress(
+      fmt::format("comparing edges of depth and colour of {} frames", recording->frames.size()));
   const Workers workers(options.request.threads);
   const auto fit = inspection_report::estimate_depth_camera(*recording, workers);
   if (!fit) return tl::unexpected(fit.error());
@@ -70,20 +73,20 @@ tl::unexpected<Error> no_samples(const recording::Recording& recording) {
       ErrorCode::usage,
       fmt::format("a calibration of camera and IMU needs an IMU, and recording '{}' has none",
                   recording.name),
-      fmt::format("take one with recorded inertial samples (--depth-camera needs none){}",
-                  recording.ground_truth.empty()
-                      ? ""
-                      : "; with --imu synthetic and without --out it only shows what it finds in those "
-                        "that the ground truth gives"));
+      fmt::format("use a recording with inertial samples (--depth-camera needs none){}",
+                  recording.ground_truth.empty() ? ""
+                                                 : "; with --imu synthetic and without --out it only prints "
+                                                   "a result for samples made from the ground truth"));
 }
 
 Result<CalibrateTask> prepare(const CalibrateVerbOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   if (!config::needs_imu(spec->config.values())) {
     return fail(ErrorCode::usage,
                 fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
-                "take --variant full: the IMU only helps to find the poses, which are the images' own");
+                "use --variant full");
   }
   if (auto related = config::check_relations(spec->config.values()); !related)
     return tl::unexpected(related.error());
@@ -103,15 +106,15 @@ Result<int> run(const CalibrateVerbOptions& options) {
   const recording::Recording& recording = task->recording;
   if (recording.imu_source == recording::ImuSource::synthetic && !options.out.empty()) {
     return fail(ErrorCode::usage,
-                fmt::format("the IMU of '{}' is made from its ground truth, so that a calibration file would "
-                            "say nothing about any sensor",
+                fmt::format("the IMU of '{}' is made from its ground truth, so a calibration file would not "
+                            "describe a sensor",
                             recording.name),
-                "a calibration needs recorded inertial samples; without --out the result is only shown");
+                "a calibration requires recorded inertial samples; without --out the result is only printed");
   }
   console::print_warnings(recording.warnings);
-  console::ProgressBar bar(recording.name + " calibrate");
+  console::Progress progress("calibrating " + recording.name);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); }};
   const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
                                                  .translation_prior_m = 0.01 * options.translation_prior_cm,
                                                  .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
@@ -120,7 +123,6 @@ Result<int> run(const CalibrateVerbOptions& options) {
   const Workers workers(options.request.threads);
   const auto calibration =
       batch_estimation::calibrate(recording, task->config.values(), how, workers, control);
-  bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
   const auto written =
       write_calibration(options.out, batch_estimation::calibrated_rig(recording, *calibration));
@@ -138,44 +140,44 @@ console::Verb add_calibrate_verb(CLI::App& app) {
       "calibrate",
       "Estimates from a recording the camera-IMU extrinsics, the offset of their clocks, the "
       "scales of the IMU's axes, and read-outs and delay of the images; or its depth camera");
-  verb->add_flag(
-      "--depth-camera", options->depth_camera,
-      "Estimates instead focal length, centre and place of the depth camera, by where edges of depth lie on "
-      "those of colour; needs no IMU");
+  verb->add_flag("--depth-camera", options->depth_camera,
+                 "Estimates focal length, centre and pose of the depth camera instead, from edges in depth "
+                 "and colour; requires no IMU");
   console::add_run_request(*verb, options->request);
   verb->add_option("--out", options->out,
                    "Writes the calibration of all sensors, for --calibration of other verbs or as the "
                    "recording's calibration.toml")
       ->type_name("FILE.toml");
-  verb->add_option(
-          "--rotation-prior", options->rotation_prior_deg,
-          "How far off the recording's calibration may be: standard deviation of the rotation, degrees")
+  verb->add_option("--rotation-prior", options->rotation_prior_deg,
+                   "Standard deviation of the rotation in the recording's calibration, degrees")
       ->check(console::number_range(0.01, 90.0))
       ->type_name("DEG")
       ->capture_default_str();
-  verb->add_option("--translation-prior", options->translation_prior_cm, "The same of the translation, cm")
+  verb->add_option("--translation-prior", options->translation_prior_cm,
+                   "Standard deviation of the translation, cm")
       ->check(console::number_range(0.01, 1000.0))
       ->type_name("CM")
       ->capture_default_str();
-  verb->add_option("--offset-prior", options->offset_prior_ms, "The same of the clocks' offset, ms")
+  verb->add_option("--offset-prior", options->offset_prior_ms, "Standard deviation of the clock offset, ms")
       ->check(console::number_range(0.01, 1000.0))
       ->type_name("MS")
       ->capture_default_str();
   verb->add_option("--scale-prior", options->scale_prior_percent,
-                   "The same of the scales of gyroscope and accelerometer, by axis, percent; 0 holds them")
+                   "Standard deviation of the scales of gyroscope and accelerometer per axis, percent; 0 "
+                   "keeps them constant")
       ->check(console::number_range(0.0, 20.0))
       ->type_name("PERCENT")
       ->capture_default_str();
   verb->add_option("--rounds", options->rounds,
-                   "At most so many runs, each from the last one's calibration; the first is a first guess")
+                   "Largest number of rounds; each starts from the calibration of the round before")
       ->check(CLI::Range(2, 20))
       ->type_name("N")
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Read-outs and delay are estimated where calibration.toml does not say them, or says them with an\n"
-      "uncertainty (readout_sigma_s, delay_sigma_s); what it says without one is held. How to move, what the "
-      "numbers mean and what they do not: docs/calibration.md.");
+      "Read-outs and delay are estimated if calibration.toml has no value, or a value with an "
+      "uncertainty\n(readout_sigma_s, delay_sigma_s); values without one are kept. Recommended motion and "
+      "definitions: docs/calibration.md.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -8,8 +8,8 @@
 
 namespace fusebench::cli::recordings {
 
-/// Writes the file, unless its name is empty, and says so, with what it replaces. Errors: io; configuration
-/// (a value that read_calibration() would refuse).
+/// Writes the file, unless its name is empty, and prints its name and the file that it replaces. Errors: io;
+/// configuration (a value that read_calibration() would refuse).
 [[nodiscard]] Result<void> write_calibration(const std::filesystem::path& out,
                                              const calibration::RigCalibration& rig);
 

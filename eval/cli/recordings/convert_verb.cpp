@@ -60,11 +60,11 @@ std::string conversion_text(const DoneExport& done) {
                      ? "not written, the recording has none"
                      : fmt::format("{} poses ({})", recording.ground_truth.size(), truth_of(recording)));
   if (done.summary.depth.beyond_range > 0)
-    fmt::format_to(out, "  depth: {} of {} measurements lie beyond {:.1f} m and are left out\n",
+    fmt::format_to(out, "  depth: {} of {} measurements beyond {:.1f} m are left out\n",
                    done.summary.depth.beyond_range, done.summary.depth.measured,
                    done.summary.depth_storage.farthest_m());
   for (const std::string& note : recording.notes) {
-    if (!note.starts_with("ground truth: pseudo")) fmt::format_to(out, "  {}\n", note);  // said above
+    if (!note.starts_with("ground truth: pseudo")) fmt::format_to(out, "  {}\n", note);  // printed above
   }
   fmt::format_to(out, "  next: fusebench inspect {}\n", done.summary.out.string());
   return text;
@@ -89,10 +89,9 @@ console::Verb add_convert_verb(CLI::App& app) {
   verb->footer(
       "Reads what `run` reads: TUM, Bonn, OpenLORIS, ICL-NUIM, ETH3D, ZR300, 7-Scenes, EuRoC with depth, "
       ".sens (ScanNet,\nBundleFusion), Stray Scanner, Record3D, Azure Kinect and RealSense by Open3D's "
-      "recorders, "
-      "ROS 1 bags.\nColour is undistorted and depth registered to it; fusebench reads the folder back as the "
-      "same "
-      "recording.\n`export --format tum` writes the same folder, and tells how ORB-SLAM3 is run on it.");
+      "recorders, ROS 1 bags.\nColour is undistorted and depth registered to it; fusebench reads the folder "
+      "back as the same recording.\n`export --format tum` writes the same folder, and prints how to run "
+      "ORB-SLAM3 on it.");
   return {verb, [options] { return convert(*options); }};
 }
 

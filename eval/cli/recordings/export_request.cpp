@@ -7,6 +7,7 @@
 
 #include "datasets/exports/export_recording.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/run/run_specification.hpp"
 #include "eval/suites/recording_names.hpp"
@@ -25,13 +26,12 @@ Result<recording::Recording> open_for_export(const ExportRequest& request) {
   return run::open_window(*place, *how, *window);
 }
 
-/// A program that is told its file reads any name; this one opens a file by the ending of its name.
+/// .sens files are recognised by their ending.
 Result<void> check_ending(const ExportRequest& request) {
   if (request.format != exports::ExportFormat::sens || request.out.extension() == ".sens") return {};
-  return fail(
-      ErrorCode::usage,
-      fmt::format("--out {}: a recording in this format is known by its ending, .sens", request.out.string()),
-      fmt::format("--out {}.sens", request.out.string()));
+  return fail(ErrorCode::usage,
+              fmt::format("--out {}: files of this format must end with .sens", request.out.string()),
+              fmt::format("--out {}.sens", request.out.string()));
 }
 
 }  // namespace
@@ -52,15 +52,14 @@ Result<DoneExport> export_as_requested(const ExportRequest& request) {
   auto recording = open_for_export(request);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
-  console::ProgressBar bar("exporting");
-  recording->load_frame = [&bar, count = recording->frames.size(),
+  console::Progress progress("writing " + request.out.string());
+  recording->load_frame = [&progress, count = recording->frames.size(),
                            load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
-    bar.show(frame, count);
+    progress.show(frame, count);
     return load(frame);
   };
   auto summary = exports::export_recording(*recording, request.format, request.out);
-  bar.clear();
-  recording->load_frame = nullptr;  // it refers to the bar
+  recording->load_frame = nullptr;  // it refers to `progress`
   if (!summary) return tl::unexpected(summary.error());
   return DoneExport{std::move(*recording), std::move(*summary)};
 }

@@ -100,11 +100,9 @@ console::Verb add_export_verb(CLI::App& app) {
                      "What to write: a folder, for klg and sens a file; must not exist");
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Colour is undistorted, and depth is that of colour's pixels: both are of one camera. Depth is rounded "
-      "to what\nthe format stores (mm; tum: 0.2 mm); what is beyond its range becomes 0 and is counted. "
-      "Nothing is written\nwhere there is an error. Prints what was written, what was lost, and how the "
-      "other "
-      "program is started.");
+      "Colour is undistorted, and depth is registered to it. Depth is rounded to the unit of the "
+      "format\n(mm; tum: 0.2 mm); values beyond its range become 0 and are counted. After an error nothing "
+      "is left.\nPrints files, lost depth, and how to start the other program.");
   return {verb, [options] { return write_export(*options); }};
 }
 

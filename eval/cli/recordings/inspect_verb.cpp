@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
@@ -6,6 +8,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/inspection/inspection.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -30,7 +33,7 @@ struct InspectVerbOptions {
   bool json = false;
 };
 
-/// What the user said wrongly is an error as in every verb; what the data are is for the inspection.
+/// Errors of the data become findings; errors of usage end the verb.
 bool is_finding(const Error& error) {
   return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
 }
@@ -43,7 +46,7 @@ Result<recording::Recording> open(const InspectVerbOptions& options, const std::
   return run::open_window(folder, *how, *window);
 }
 
-/// How many frames the catalogue says there are.
+/// Number of frames in the catalogue.
 std::optional<std::size_t> published_frames(const std::filesystem::path& folder) {
   const calibration::CatalogueEntry* entry = calibration::catalogue_entry_of_folder(folder);
   if (entry == nullptr || !entry->frames) return std::nullopt;
@@ -57,6 +60,7 @@ int print(const inspection::Inspection& inspection, const InspectVerbOptions& op
 }
 
 Result<int> run(const InspectVerbOptions& options) {
+  console::Progress progress("opening " + options.recording);
   const auto folder = suites::find_recording(options.recording, options.data);
   auto recording = folder.and_then([&](const auto& found) { return open(options, found); });
   if (!recording && options.json && is_finding(recording.error())) {
@@ -65,6 +69,7 @@ Result<int> run(const InspectVerbOptions& options) {
                  options);
   }
   if (!recording) return tl::unexpected(recording.error());
+  progress.say(fmt::format("inspecting {} frames", recording->frames.size()));
   const Workers workers(options.threads);
   inspection::InspectOptions inspect_options;
   if (options.frames.empty()) inspect_options.expected_frames = published_frames(*folder);
@@ -94,9 +99,8 @@ console::Verb add_inspect_verb(CLI::App& app) {
   console::add_data_option(*verb, options->data);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Findings are errors (do not trust results on this recording), warnings and notes; docs/inspect.md "
-      "lists\n"
-      "their codes. Exit code 3 if there is an error.");
+      "Findings are errors (results on this recording are not valid), warnings and notes; docs/inspect.md "
+      "lists\ntheir codes. Exit code 3 if there is an error.");
   return {verb, [options] { return run(*options); }};
 }
 

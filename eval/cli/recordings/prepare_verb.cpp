@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
@@ -35,15 +38,19 @@ Result<recording::Recording> open(const PrepareVerbOptions& options) {
 }
 
 Result<int> run(const PrepareVerbOptions& options) {
-  const auto recording = open(options);
+  console::Progress progress("opening " + options.recording);
+  auto recording = open(options);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);
   const Workers workers(options.threads);
+  progress.say("measuring the depth camera, checking the IMU");
+  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
+  if (sensors.depth_camera) preparation::use_depth_camera(*recording, *sensors.depth_camera);
+  progress.say(fmt::format("measuring read-outs and delay of {} frames", recording->frames.size()));
   const auto prepared = preparation::prepare(*recording, workers, nullptr);
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
-  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
   return 0;
@@ -55,8 +62,8 @@ console::Verb add_prepare_verb(CLI::App& app) {
   auto options = std::make_shared<PrepareVerbOptions>();
   CLI::App* verb = app.add_subcommand(
       "prepare",
-      "Measures from the images what the calibration leaves open (read-outs of colour and depth, delay of "
-      "depth), and checks the IMU");
+      "Measures from the images the timing that the calibration does not contain "
+      "(read-outs of colour and depth, delay of depth) and the depth camera, and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);

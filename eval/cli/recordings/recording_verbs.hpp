@@ -1,4 +1,4 @@
-// Verbs about recordings themselves: what is in them, made ones, other formats, and their calibration.
+// Verbs on recordings: inspection, simulation, conversion and calibration.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"

@@ -7,6 +7,7 @@
 
 #include "datasets/simulator/simulation.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/suites/simulation_request.hpp"
@@ -65,7 +66,7 @@ std::string json_of(const SimulateOptions& chosen, const simulator::SimulationRe
 
 void print_summary(const simulator::SimulationReport& report) {
   if (report.reused) {
-    console::print_progress("this recording is there already: left as it is");
+    console::print_progress("this recording exists already and stays unchanged");
     return;
   }
   console::print_warnings(report.warnings);
@@ -87,11 +88,10 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
   const auto options = simulation_of(chosen);
   if (!options) return tl::unexpected(options.error());
   const Workers workers(chosen.threads);
-  console::ProgressBar bar("simulating");
+  console::Progress progress("simulating " + chosen.out.string());
   simulator::SimulationControl control;
-  control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
+  control.progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   const auto report = simulator::simulate(*options, chosen.out, workers, control);
-  bar.clear();
   if (!report) return tl::unexpected(report.error());
   print_summary(*report);
   console::print_output(chosen.json ? json_of(chosen, *report) : chosen.out.string() + "\n");
@@ -124,7 +124,7 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
       ->excludes(in_motion);
   auto* trajectory =
       verb.add_option("--trajectory", options.request.trajectory,
-                      "Camera path instead of a preset: TUM text (world z up), or a trajectory of ICL-NUIM")
+                      "Camera path instead of a preset: TUM text (z up), or a trajectory of ICL-NUIM")
           ->type_name("FILE");
   verb.add_option("--speed", options.request.speed, "Speeds up the motion of --trajectory by this factor")
       ->type_name("X")
@@ -140,11 +140,10 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
 }
 
 void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
-  verb.add_flag(
-      "--realistic", options.request.realistic,
-      "Sensors as they are: untold rolling shutters and delay of depth, stamps that jitter, dropped "
-      "frames, automatic exposure, a mosaic of filters, errors of depth and IMU; in an office, if the "
-      "preset brings no scene of its own");
+  verb.add_flag("--realistic", options.request.realistic,
+                "Realistic sensors: uncalibrated rolling shutters and depth delay, jitter of stamps, dropped "
+                "frames, automatic exposure, a colour filter mosaic, errors of depth and IMU; in an office "
+                "if the preset has no scene of its own");
   verb.add_option("--rate", options.request.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
       ->type_name("HZ")
       ->capture_default_str();
@@ -180,8 +179,7 @@ std::string kinds_of_faults() {
 
 void add_fault_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--fault", options.request.faults,
-                  "Fault from BEGIN to END, seconds from the first frame; may be given several times: " +
-                      kinds_of_faults())
+                  "Fault from BEGIN to END, seconds from the first frame; repeatable: " + kinds_of_faults())
       ->type_name("KIND=BEGIN:END[:AMOUNT]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -225,9 +223,8 @@ console::Verb add_simulate_verb(CLI::App& app) {
   console::add_threads_option(*verb, options->threads);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "The same options make the same bytes. A folder that holds this recording already is left as it is; "
-      "one that "
-      "holds\nanything else is an error. Prints the folder, or with --json what was made.");
+      "The same options make the same bytes. A folder that already contains this recording stays "
+      "unchanged;\nany other existing folder is an error. Prints the folder, or with --json a summary.");
   return {verb, [options] { return simulate_recording(*options); }};
 }
 

@@ -9,6 +9,7 @@
 #include "core/io/staged_folder.hpp"
 #include "eval/batch_estimation/smoothing.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -25,6 +26,7 @@ struct SmoothVerbOptions {
 };
 
 Result<run::PreparedRun> prepare(const SmoothVerbOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   if (!config::needs_imu(spec->config.values())) {
@@ -57,17 +59,16 @@ Result<int> run(const SmoothVerbOptions& options) {
   if (recording.imu_source == recording::ImuSource::synthetic) {
     return fail(
         ErrorCode::usage,
-        fmt::format("the IMU of '{}' is made from its ground truth, which would become part of the reference",
+        fmt::format("the IMU of '{}' is made from its ground truth, so the reference would depend on it",
                     recording.name),
         "a reference trajectory needs recorded inertial samples");
   }
   console::print_warnings(recording.warnings);
-  console::ProgressBar bar(recording.name + " smooth");
+  console::Progress progress("estimating " + recording.name);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); }};
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); }};
   const Workers workers(options.request.threads);
   const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values(), workers, control);
-  bar.clear();
   if (!smoothed) return tl::unexpected(smoothed.error());
   console::print_warnings(batch_estimation::smoothing_remarks(*smoothed));
   const std::string json = batch_estimation::to_json(*smoothed, recording);
@@ -90,9 +91,8 @@ console::Verb add_smooth_verb(CLI::App& app) {
       ->required();
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "The trajectory is labelled \"pseudo ground truth\": it comes from the recording that it may be "
-      "compared "
-      "with.\nAs groundtruth.txt beside the images it keeps that label.");
+      "The trajectory is labelled \"pseudo ground truth\", because it is estimated from the same "
+      "recording.\nAs groundtruth.txt next to the images it keeps this label.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -13,6 +13,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/config/config_access.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/compare/comparison.hpp"
@@ -64,13 +65,16 @@ Result<int> compare(const CompareOptions& options) {
       options.gates.empty() ? Result<compare::Gates>(compare::Gates()) : compare::read_gates(options.gates);
   if (!gates) return tl::unexpected(gates.error());
   if (auto known = check_ignored(options.ignored); !known) return tl::unexpected(known.error());
+  console::Progress progress(fmt::format("reading {}", options.base.string()));
   auto base = run_files::find_runs(options.base);
   if (!base) return tl::unexpected(base.error());
+  progress.say(fmt::format("reading {}", options.fresh.string()));
   auto fresh = run_files::find_runs(options.fresh);
   if (!fresh) return tl::unexpected(fresh.error());
   const auto confirming = options.confirm.empty() ? Result<std::vector<run_files::FoundRun>>()
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
+  progress.say("comparing runs");
   const compare::RunComparison comparison =
       compare::compare_runs(std::move(*base), std::move(*fresh), *gates, *confirming, options.ignored);
   // A file is no terminal, whatever standard output is.
@@ -103,10 +107,9 @@ console::Verb add_compare_verb(CLI::App& app) {
   verb->add_option("--confirm", options->confirm,
                    "Repeated runs of NEW: times and memory fail their gates only if these confirm it")
       ->type_name("DIR");
-  verb->add_option(
-          "--ignore-options", options->ignored,
-          "Compares runs that differ in this option, or in all whose keys begin so (patches.); may be "
-          "repeated")
+  verb->add_option("--ignore-options", options->ignored,
+                   "Compares runs that differ in this option, or in all options whose keys start with KEY "
+                   "(patches.); repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY");
   verb->add_option(
@@ -116,8 +119,8 @@ console::Verb add_compare_verb(CLI::App& app) {
       ->check(
           CLI::IsMember({"table", "markdown", "json", "junit", "gbench", "github-benchmark", "openmetrics"}))
       ->capture_default_str();
-  verb->add_option("--out", options->out, "Writes there instead of standard output")->type_name("FILE");
-  verb->add_flag("--all", options->all, "Shows gates that are unchanged, too (table and markdown)");
+  verb->add_option("--out", options->out, "Writes to FILE instead of standard output")->type_name("FILE");
+  verb->add_flag("--all", options->all, "Also shows gates without a change (table and markdown)");
   console::add_width_option(*verb, options->width);
   return {verb, [options] { return compare(*options); }};
 }

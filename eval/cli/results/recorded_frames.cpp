@@ -17,7 +17,7 @@ namespace fusebench::cli::results {
 
 namespace {
 
-/// In the folder of recordings; else where an engine puts simulated ones beside its runs.
+/// In the folder of recordings, else where an engine writes simulated ones next to its runs.
 Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorded,
                                         const std::filesystem::path& data,
                                         const std::filesystem::path& runs) {

@@ -1,4 +1,4 @@
-// Images of the recordings that runs are of, for their report.
+// Images of the recordings of runs, for reports.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace fusebench::cli::results {
 
-/// data: the folder of recordings, which are looked for there by the names that records have; simulated ones
-/// also beside the folder of runs, where `bench` puts them. Errors of the reader: data_missing if the
-/// recording is not there, or another one; those of reading it.
+/// data: folder in which recordings are searched by their recorded names; simulated ones are also searched
+/// next to the folder of runs, where `bench` writes them. Errors of the reader: data_missing if the
+/// recording does not exist or has other content; those of reading it.
 [[nodiscard]] report::FrameReader recorded_frames(const std::filesystem::path& data,
                                                   const std::filesystem::path& runs);
 

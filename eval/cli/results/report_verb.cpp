@@ -4,10 +4,14 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
 
+#include "datasets/images/image_files.hpp"
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/results/recorded_frames.hpp"
 #include "eval/cli/results/result_verbs.hpp"
@@ -30,13 +34,30 @@ struct ReportOptions {
   std::string figure_format = "svg";
 };
 
+/// As PAGE-RUN.png in the folder of the page; PAGE-RUN-2.png where runs have names alike.
+report::PictureWriter pictures_beside(const std::filesystem::path& page) {
+  return [page, names = std::set<std::string>()](const std::string& run,
+                                                 const ColorImage& picture) mutable -> Result<std::string> {
+    const std::string stem = fmt::format("{}-{}", page::file_name_of(page.stem().string()), run);
+    std::string name = stem + ".png";
+    for (int copy = 2; !names.insert(name).second; ++copy) name = fmt::format("{}-{}.png", stem, copy);
+    const auto png = images::encode_png(picture);
+    if (!png) return tl::unexpected(png.error());
+    const std::string_view bytes(reinterpret_cast<const char*>(png->data()), png->size());
+    return text::write_text_file(page.parent_path() / name, bytes).map([&] { return name; });
+  };
+}
+
 Result<int> report(const ReportOptions& options) {
+  console::Progress progress(fmt::format("reading {}", options.runs.string()));
   const auto runs = run_files::find_runs(options.runs);
   if (!runs) return tl::unexpected(runs.error());
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
-  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs));
+  progress.say(fmt::format("report of {} runs", runs->size()));
+  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs),
+                                                  pictures_beside(options.out));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
   auto sweep = report::sweep_sections(*rows);
@@ -52,6 +73,7 @@ Result<int> report(const ReportOptions& options) {
   if (options.figures.empty()) return 0;
   const auto format = page::parse_figure_format(options.figure_format);
   if (!format) return tl::unexpected(format.error());
+  progress.say("drawing figures");
   const auto figures = page::write_figures(page.page, options.figures, *format);
   if (!figures) return tl::unexpected(figures.error());
   console::print_progress(fmt::format("{}: {} figures", options.figures.string(), *figures));
@@ -69,12 +91,13 @@ console::Verb add_report_verb(CLI::App& app) {
   console::add_data_option(*verb, options->data);
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
       ->type_name("TEXT");
-  verb->add_option(
-          "--figures", options->figures,
-          "Writes every chart as a file for papers as well, and beside it the script that draws it (gnuplot)")
-      ->type_name("DIR");
+  auto* figures =
+      verb->add_option("--figures", options->figures,
+                       "Also writes every chart as a file for papers, with the gnuplot script that draws it")
+          ->type_name("DIR");
   verb->add_option("--figure-format", options->figure_format, "svg or pdf")
       ->check(CLI::IsMember({"svg", "pdf"}))
+      ->needs(figures)
       ->capture_default_str();
   return {verb, [options] { return report(*options); }};
 }

@@ -1,4 +1,4 @@
-// Verbs that show runs and hold them against each other.
+// Verbs that show and compare runs.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"

@@ -83,7 +83,7 @@ console::Verb add_table_verb(CLI::App& app) {
           ->check(CLI::IsMember({"markdown", "csv", "csv-long", "json", "latex"}))
           ->capture_default_str();
   verb->add_option("--paper", options->paper,
-                   "A published table (table1, ate_tum, ate_icl, surface_icl) beside what was run here")
+                   "A published table (table1, ate_tum, ate_icl, surface_icl) next to the results of RUNS")
       ->type_name("NAME");
   verb->add_flag(
           "--systems", options->systems,

@@ -46,9 +46,7 @@ Result<std::vector<engine::BatchOutcome>> run_here(const std::vector<engine::Bat
   engine::EngineOptions engine = controls.engine;
   engine.limits = limits;
   console::EngineConsole console(jobs);
-  auto outcomes = engine::run_locally(jobs, engine, console.control());
-  console.clear();
-  return outcomes;
+  return engine::run_locally(jobs, engine, console.control());
 }
 
 }  // namespace fusebench::cli::running

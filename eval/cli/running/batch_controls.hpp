@@ -1,4 +1,4 @@
-// What every verb shares that plans a batch of runs and runs it.
+// Options and steps of the verbs that plan and run a batch of runs.
 #pragma once
 
 #include <vector>
@@ -25,13 +25,13 @@ struct BatchControls {
 /// --simulated, -j, --dry-run and --threads.
 void add_batch_controls(CLI::App& verb, engine::BatchOptions& batch, BatchControls& controls);
 
-/// Side by side, runs share the machine unless somebody says how many threads each has.
+/// Without --threads, parallel runs share the threads of the machine.
 void share_threads(const BatchControls& controls, engine::BatchOptions& batch);
 
-/// Prints what would run, and which of it is finished.
+/// Prints the planned runs and which of them are finished.
 void print_preview(const engine::BatchPlan& plan, const BatchControls& controls);
 
-/// Simulates what is missing and runs the jobs on this machine. Errors: those of the simulator and of
+/// Simulates missing recordings and runs the jobs on this machine. Errors: those of the simulator and of
 /// run_locally().
 [[nodiscard]] Result<std::vector<engine::BatchOutcome>> run_here(const std::vector<engine::BatchJob>& jobs,
                                                                  const BatchControls& controls,

@@ -37,7 +37,7 @@ Result<int> collect(const CollectOptions& options) {
   }
   if (const std::size_t damaged = aggregate::unreadable_count(*rows); damaged > 0)
     console::print_progress(
-        fmt::format("{} of {} records cannot be read; the table says why", damaged, rows->size()));
+        fmt::format("{} of {} records cannot be read; the table has the reasons", damaged, rows->size()));
   return 0;
 }
 

@@ -1,4 +1,4 @@
-// A suite's command, given again from the file that was kept of it.
+// Reads the stored invocation of a suite and enters its folder.
 #pragma once
 
 #include <filesystem>

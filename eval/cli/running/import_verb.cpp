@@ -10,7 +10,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/record/clock_note.hpp"
-#include "eval/run/imported_run.hpp"
+#include "eval/run/foreign_runs.hpp"
 #include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::running {
@@ -88,7 +88,7 @@ console::Verb add_import_verb(CLI::App& app) {
   verb->add_option("TRAJECTORY", options->trajectory,
                    "Its poses of the colour camera (--trajectory-format), or NAME.sens")
       ->required();
-  verb->add_option("MESH", options->mesh, "Its mesh in the world frame of these poses, .ply or .obj");
+  verb->add_option("MESH", options->mesh, "Mesh of the system in the frame of these poses, .ply or .obj");
   verb->add_option("--recording", options->recording,
                    "Folder of the recording, or the name of one under --data")
       ->type_name("REC")
@@ -102,12 +102,11 @@ console::Verb add_import_verb(CLI::App& app) {
   verb->add_option("--unit", options->unit, "Unit of its positions and of its mesh")
       ->check(CLI::IsMember({"m", "mm"}))
       ->capture_default_str();
-  verb->add_option("--pose", options->pose, "What its poses map: the camera to the world, or the inverse")
+  verb->add_option("--pose", options->pose, "Direction of its poses: camera to world, or the inverse")
       ->check(CLI::IsMember({"camera_to_world", "world_to_camera"}))
       ->capture_default_str();
   verb->add_option("--poses", options->poses,
-                   "online: as each was known when its frame came; final: as all were known at the end. A "
-                   "label in tables")
+                   "online: estimated when the frame arrived; final: estimated at the end. A label in tables")
       ->check(CLI::IsMember({"online", "final"}))
       ->capture_default_str();
   verb->add_option("--imu", options->imu,

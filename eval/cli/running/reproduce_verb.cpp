@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/batch_controls.hpp"
 #include "eval/cli/running/run_verbs.hpp"
@@ -44,13 +45,15 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   const auto plan = reproduction::plan_table1(*protocol, *recordings, options.batch, options.extent);
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& name : plan->absent)
-    console::print_progress(fmt::format("left out, not there: {}", name));
+    console::print_progress(fmt::format("left out, does not exist: {}", name));
   if (options.controls.dry_run) {
     print_preview({plan->jobs, {}, {}}, options.controls);
     return 0;
   }
   const auto outcomes = run_here(plan->jobs, options.controls, recordings->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
+  const console::Progress progress("tables");
+  const console::Heartbeat heartbeat;
   const auto table = reproduction::table1_of(*protocol, *plan, *outcomes);
   if (!table) return tl::unexpected(table.error());
   console::print_output(reproduction::render_table1(*table, options.controls.json ? "json" : options.format));
@@ -87,6 +90,8 @@ Result<int> reproduce_figures(ReproduceOptions options) {
   }
   const auto outcomes = run_here(plan->jobs, options.controls, suite->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
+  const console::Progress progress("drawing figures");
+  const console::Heartbeat heartbeat;
   std::error_code error;
   std::filesystem::create_directories(options.figures, error);
   if (error)
@@ -117,26 +122,26 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   options.format = "markdown";
   console::add_data_option(*table1, options.batch.data);
   add_running_options(*table1, options);
-  table1->add_option("--reading", options.extent.readings, "Only this reading, by its name; may be repeated")
+  table1->add_option("--reading", options.extent.readings, "Only this reading; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   table1
       ->add_option("--only", options.batch.only,
-                   "Only some recordings: recording=TEXT (the name contains it); may be repeated")
+                   "Only some recordings: recording=TEXT (the name contains it); repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   table1->add_option("--format", options.format, "markdown or latex")
       ->check(CLI::IsMember({"markdown", "latex"}))
       ->capture_default_str();
   table1->add_flag("--all-seeds", options.extent.factorial_everywhere,
-                   "The factorial over all recordings, and not only over the first one of each column");
+                   "Makes the factorial for all recordings instead of the first one of each column");
   table1->add_option("--page", options.page, "Writes the tables as a page as well (HTML, needs no network)")
       ->type_name("FILE.html");
   console::add_json_flag(*table1, options.controls.json);
   table1->footer(
-      "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"
-      "explains them. Recordings that are not under --data have simulated stand-ins, and the output says\n"
-      "which is which. A finished run is not repeated.");
+      "A reading is one interpretation of definitions that the paper leaves open (direct method, "
+      "error);\ndocs/table1.md explains them. Recordings that are not under --data are replaced by simulated "
+      "ones,\nwhich the output labels. A finished run is not repeated.");
   return table1;
 }
 
@@ -163,20 +168,24 @@ CLI::App* add_figures(CLI::App& verb, ReproduceOptions& options) {
 
 console::Verb add_reproduce_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "reproduce", "Runs what the paper's table or its figures need, and shows it beside what is published");
+      "reproduce",
+      "Makes the runs of the paper's table or figures, and shows them next to the published ones");
   verb->require_subcommand(1);
   const auto table1_options = std::make_shared<ReproduceOptions>();
   const auto figures_options = std::make_shared<ReproduceOptions>();
   CLI::App* table1 = add_table1(*verb, *table1_options);
   CLI::App* figures = add_figures(*verb, *figures_options);
-  return {verb, [=] {
-            if (figures->parsed()) {
-              figures_options->controls.threads_given = figures->count("--threads") > 0;
-              return reproduce_figures(*figures_options);
-            }
-            table1_options->controls.threads_given = table1->count("--threads") > 0;
-            return reproduce_table1(*table1_options);
-          }};
+  return {.app = verb,
+          .run =
+              [=] {
+                if (figures->parsed()) {
+                  figures_options->controls.threads_given = figures->count("--threads") > 0;
+                  return reproduce_figures(*figures_options);
+                }
+                table1_options->controls.threads_given = table1->count("--threads") > 0;
+                return reproduce_table1(*table1_options);
+              },
+          .forks = true};
 }
 
 }  // namespace fusebench::cli::running

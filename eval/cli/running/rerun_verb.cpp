@@ -47,10 +47,13 @@ console::Verb add_rerun_verb(CLI::App& app) {
       ->check(CLI::Range(1, run::kMostAtOnce))
       ->type_name("N")
       ->capture_default_str();
-  return {verb, [options] {
-            options->bench.controls.threads_given = true;  // as the runs were asked for
-            return rerun(options->bench, options->runs);
-          }};
+  return {.app = verb,
+          .run =
+              [options] {
+                options->bench.controls.threads_given = true;  // the invocation has the number
+                return rerun(options->bench, options->runs);
+              },
+          .forks = true};
 }
 
 }  // namespace fusebench::cli::running

@@ -42,14 +42,14 @@ run::ImuChoice imu_of(const record::RunRecord& record) {
   return record.recording.imu == "synthetic IMU" ? run::ImuChoice::synthetic : run::ImuChoice::recorded;
 }
 
-/// A record knows the name of its recording, and not its place.
+/// Finds the recording by its name, because a record does not contain its folder.
 tl::unexpected<Error> not_found(const record::RunRecord& record, const fs::path& data, const Error& error) {
   const std::string and_so = data.empty() || error.hint.empty() ? "" : fmt::format("; {}", error.hint);
   return fail(
       error.code,
       fmt::format("the record is of '{}', which is not there: {}", record.recording.name, error.message),
-      fmt::format("it is looked for by that name here and in the folder of --data or FUSEBENCH_DATA; `run "
-                  "RECORDING --like RECORD` names its place{}",
+      fmt::format("searched by this name in the current folder and in --data or FUSEBENCH_DATA; pass its "
+                  "folder: `run RECORDING --like RECORD`{}",
                   and_so));
 }
 
@@ -63,7 +63,7 @@ Result<record::RunRecord> record_to_repeat(const fs::path& place) {
     return fail(ErrorCode::usage,
                 fmt::format("{}: '{}' was not run by this program", place.string(), record->variant),
                 record->program ? "--system FILE.toml runs an external program"
-                                : "`fusebench import` evaluates what another program made");
+                                : "evaluate the output of another program with `fusebench import`");
   }
   return record;
 }

@@ -1,4 +1,4 @@
-// A run that is asked for by the record of another one.
+// The specification of a run from the record of another run.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace fusebench::cli::running {
 
-/// The record in a file, or in the folder of a run. Errors: those of read_record(); usage for a run of
-/// another program, which a record does not say how to call.
+/// The record in a file, or in the folder of a run. Errors: those of read_record(); usage for an
+/// imported run, whose record has no command.
 [[nodiscard]] Result<record::RunRecord> record_to_repeat(const std::filesystem::path& place);
 
 /// The same variant, options, IMU, window and repetition over the recording of that name, or over the one
@@ -22,8 +22,8 @@ namespace fusebench::cli::running {
 [[nodiscard]] Result<run::RunSpec> spec_like(const record::RunRecord& record,
                                              const console::RunRequest& request);
 
-/// What is different from the recorded run, in sentences: another content of the recording, another IMU or
-/// another version of the estimator. Empty: the results are the same.
+/// Sentences on differences from the recorded run: content of the recording, IMU or version of the estimator.
+/// Empty: the results are the same.
 [[nodiscard]] std::vector<std::string> differences(const record::RunRecord& record,
                                                    const run::PreparedRun& prepared);
 

@@ -9,6 +9,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/io/abandoned.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/stop_signals.hpp"
@@ -43,7 +44,7 @@ Result<void> check_options(const RunOptions& options) {
   const auto useless = [](const std::string& option, std::string_view why) {
     return fail(ErrorCode::usage, fmt::format("{} does nothing with --system: {}", option, why));
   };
-  if (options.profile) return useless("--profile", "an external program's stages are not known");
+  if (options.profile) return useless("--profile", "the stages of an external program cannot be timed");
   for (const std::string& set : options.request.sets) {
     if (!set.starts_with("evaluation."))
       return useless("--set " + set, "only evaluation.* counts; its own options belong into its command");
@@ -124,20 +125,21 @@ Result<run::PreparedRun> prepare_like(const RunOptions& options) {
   return prepared;
 }
 
-/// The record says these. (The parser lists options that exclude several in another order each time.)
+/// Refuses options whose values are in the record. (The parser's own check lists them in varying order.)
 Result<void> check_alone(const CLI::App& verb) {
   if (verb.count("--like") == 0) return {};
   for (const char* const option : {"--variant", "--imu", "--config", "--frames", "--prepare", "--repetition",
                                    "--replicates", "--system"}) {
     if (verb.count(option) > 0)
-      return fail(
-          ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
-          "a record says variant, options, IMU, frames, repetition and replicate; --set changes an option");
+      return fail(ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
+                  "a record contains variant, options, IMU, frames, repetition and replicate; --set changes "
+                  "an option");
   }
   return {};
 }
 
 Result<run::PreparedRun> prepare(const RunOptions& options) {
+  const console::Progress opening("opening " + options.request.recording);
   if (!options.like.empty()) return prepare_like(options);
   auto spec = asked_for(options);
   if (!spec) return tl::unexpected(spec.error());
@@ -146,27 +148,26 @@ Result<run::PreparedRun> prepare(const RunOptions& options) {
   return run::prepare_run(std::move(*spec));
 }
 
-/// Executes one run and says how it ended.
+/// Executes one run and prints its result.
 Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   io::remove_abandoned(prepared.folder.parent_path());  // what an earlier one that was killed left
   const int replicate = prepared.spec.replicate;
   const std::string title = fmt::format("{} {}{}", prepared.recording.name, prepared.spec.variant,
                                         replicate > 0 ? fmt::format(" replicate {}", replicate) : "");
-  console::ProgressBar bar(title);
+  console::Progress progress(title);
   const run::RunControl control = {
-      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
+      .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); },
       .stop = &console::stop_requested(),
       .bad_data_is_recorded = false,
       .preparing =
           [&] {
-            console::print_progress(
-                fmt::format("{}: measures what its calibration leaves open (--prepare off: it does not)",
-                            prepared.recording.name));
+            console::print_progress(fmt::format(
+                "{}: measuring the timing that its calibration does not contain (--prepare off skips this)",
+                prepared.recording.name));
           }};
   auto record = run::execute_run(prepared, control);
-  bar.clear();
   if (!record) return record;
-  // What opening it has not said: what was measured in the recording and found of its IMU.
+  // Prints the notes that opening did not print: measured timing and findings on the IMU.
   const std::vector<std::string> said = record::reading_notes(prepared.recording, prepared.spec.recording);
   for (const std::string& note : record->recording.notes) {
     // The status line has a contradiction.
@@ -221,8 +222,8 @@ console::Verb add_run_verb(CLI::App& app) {
   verb->get_option("RECORDING")->required(false);  // a record names one
   options->request.prepare = "auto";
   verb->add_option("--prepare", options->request.prepare,
-                   "auto: first measures, once for a recording, what its calibration leaves open (`fusebench "
-                   "prepare`), and runs with that; off: takes the calibration as it is")
+                   "auto: measures the timing that the calibration does not contain (`fusebench prepare`, "
+                   "once per recording) and uses it; off: uses the calibration unchanged")
       ->check(CLI::IsMember({"auto", "off"}))
       ->capture_default_str();
   verb->add_option(
@@ -240,10 +241,9 @@ console::Verb add_run_verb(CLI::App& app) {
       ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N")
       ->capture_default_str();
-  verb->add_option(
-          "--replicates", options->replicates,
-          "Makes the run N times from initial poses that differ by noise far below what sensors resolve "
-          "(system.replicate_noise): what differs is chance")
+  verb->add_option("--replicates", options->replicates,
+                   "Number of runs, whose initial poses differ by noise far below the resolution of the "
+                   "sensors (system.replicate_noise): their results differ by chance")
       ->check(CLI::Range(1, run::kMostReplicates))
       ->type_name("N")
       ->capture_default_str();

@@ -1,4 +1,4 @@
-// Verbs that make runs, keep their folders, and gather what they say.
+// Verbs that make runs, maintain their folders and collect their results.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"

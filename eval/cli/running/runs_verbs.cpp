@@ -76,13 +76,13 @@ Result<int> merge(const MergeOptions& options) {
 
 console::Verb add_gc_verb(CLI::App& app) {
   auto options = std::make_shared<GcOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "gc",
-      "Removes temporary files, stale claims and, if asked, failed or outdated runs from a folder of runs");
+  CLI::App* verb = app.add_subcommand("gc",
+                                      "Removes temporary files, stale claims and, with options, failed or "
+                                      "outdated runs from a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder of runs")->required();
   verb->add_flag("--failed", options->garbage.failed, "Failed and damaged runs, too");
   verb->add_flag("--stale", options->garbage.stale, "Runs of other versions of the estimator, too");
-  verb->add_flag("--dry-run", options->garbage.only_look, "Only lists what it would remove");
+  verb->add_flag("--dry-run", options->garbage.only_look, "Lists the files without removing them");
   console::add_json_flag(*verb, options->json);
   return {verb, [options] { return collect(*options); }};
 }

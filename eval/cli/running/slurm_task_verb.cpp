@@ -28,7 +28,8 @@ console::Verb add_slurm_task_verb(CLI::App& app) {
   verb->add_option("TASK", options->task, "Number of the task")->required();
   verb->add_option("-j,--jobs", options->engine.at_once, "Runs at a time")
       ->check(CLI::Range(1, run::kMostAtOnce));
-  return {verb, [options]() -> Result<int> {
+  return {.app = verb,
+          .run = [options]() -> Result<int> {
             const auto invocation = enter_invocation(options->invocation);
             if (!invocation) return tl::unexpected(invocation.error());
             const auto suite = engine::suite_of(*invocation);
@@ -43,7 +44,8 @@ console::Verb add_slurm_task_verb(CLI::App& app) {
                 engine::run_slurm_task(plan->jobs, options->engine, options->tasks, options->task, control);
             if (!done) return tl::unexpected(done.error());
             return 0;
-          }};
+          },
+          .forks = true};
 }
 
 }  // namespace fusebench::cli::running

@@ -22,13 +22,13 @@ struct RunCounts {
 
 [[nodiscard]] RunCounts counts_of(const std::vector<engine::BatchOutcome>& outcomes);
 
-/// Summarises the runs: the files that were asked for, the tables, and the criteria. Nothing of that
-/// is for a suite without criteria unless a file is asked for.
+/// Summarises the runs: requested files, tables and criteria. Does nothing for a suite without criteria if no
+/// file is requested.
 [[nodiscard]] Result<std::vector<study::CriterionResult>> conclude(
     const suites::Suite& suite, const BenchOptions& options, const engine::BatchPlan& plan,
     const std::vector<engine::BatchOutcome>& outcomes);
 
-/// 1 if a criterion failed. Criteria decide about lost runs; without criteria, each run has to be ok.
+/// 1 if a criterion failed. With criteria, lost runs count by them; without criteria, every run must be ok.
 [[nodiscard]] int exit_code_of(const RunCounts& counts, const std::vector<study::CriterionResult>& criteria);
 
 [[nodiscard]] std::string json_of(const suites::Suite& suite, const engine::BatchPlan& plan,

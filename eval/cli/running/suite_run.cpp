@@ -9,6 +9,7 @@
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/engine_console.hpp"
+#include "eval/cli/console/progress.hpp"
 #include "eval/cli/running/suite_conclusion.hpp"
 #include "eval/engine/simulated_recordings.hpp"
 #include "eval/suites/suite_file.hpp"
@@ -29,9 +30,7 @@ Result<std::vector<engine::BatchOutcome>> run_on_cluster(const BenchOptions& opt
   std::error_code ignored;
   const engine::SlurmSite site{std::filesystem::absolute(kept, ignored),
                                std::filesystem::read_symlink("/proc/self/exe", ignored)};
-  auto outcomes = engine::run_on_slurm(plan.jobs, engine, options.slurm, site, console.control());
-  console.clear();
-  return outcomes;
+  return engine::run_on_slurm(plan.jobs, engine, options.slurm, site, console.control());
 }
 
 Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, const suites::Suite& suite,
@@ -45,11 +44,11 @@ Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, 
   return run_here(plan.jobs, options.controls, suite.limits, all_threads);
 }
 
-/// On a cluster, a run has one thread unless somebody says how many, and the cluster many runs.
+/// Sets threads and runs at a time: on a cluster one thread per run without --threads.
 Result<void> set_executor(BenchOptions& options) {
   if (options.executor == "local") {
     if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())
-      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg are for --executor slurm");
+      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg require --executor slurm");
     share_threads(options.controls, options.invocation.options);
     return {};
   }
@@ -59,7 +58,8 @@ Result<void> set_executor(BenchOptions& options) {
   options.slurm.at_once = at_once;
   options.slurm.cpus = at_once * threads;
   if (!options.controls.engine.repeat_finished) return {};
-  return fail(ErrorCode::usage, "--repeat is for --executor local", "another --out starts afresh");
+  return fail(ErrorCode::usage, "--repeat requires --executor local",
+              "pass another --out to repeat all runs");
 }
 
 /// Returns when everything is in the queue.
@@ -69,8 +69,8 @@ Result<int> submit(const BenchOptions& options, const suites::Suite& suite, cons
   if (!outcomes) return tl::unexpected(outcomes.error());
   const std::string out = options.invocation.options.out.string();
   console::print_progress(
-      fmt::format("{}: submitted; `fusebench collect {}` shows what is there, and the same command without "
-                  "--submit waits for the rest and submits again what was lost",
+      fmt::format("{}: submitted; `fusebench collect {}` shows finished runs, and the same command without "
+                  "--submit waits for the others and resubmits lost runs",
                   suite.name, out));
   return 0;
 }
@@ -114,11 +114,13 @@ Result<int> run_suite(BenchOptions options) {
   if (counts.total == 0) {
     return fail(ErrorCode::data_missing,
                 fmt::format("suite '{}': none of the recordings can be opened", suite->name),
-                "the lines above say why");
+                "the lines above give the reasons");
   }
   console::print_progress(fmt::format(
       "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,
       plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
+  const console::Progress progress("summary of the runs");
+  const console::Heartbeat heartbeat;
   const auto criteria = conclude(*suite, options, *plan, *outcomes);
   if (!criteria) return tl::unexpected(criteria.error());
   if (options.controls.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));

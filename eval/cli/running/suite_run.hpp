@@ -20,7 +20,7 @@ struct BenchOptions {
   std::filesystem::path summary_page;
 };
 
-/// Plans and runs the suite, prints what came out of it and gives the exit code. Errors: those of suite_of(),
+/// Plans and runs the suite, prints its results and returns the exit code. Errors: those of suite_of(),
 /// plan_batch() and the engines; usage for options that do not go together or a suite without runs;
 /// data_missing if no recording can be opened.
 [[nodiscard]] Result<int> run_suite(BenchOptions options);

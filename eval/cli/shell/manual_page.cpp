@@ -95,7 +95,7 @@ std::string manual_page(const VerbDescription& verb, const VerbDescription& prog
   if (!verb.verbs.empty()) text += ".SH VERBS\n";
   for (const VerbDescription& inner : verb.verbs)
     text += fmt::format(".TP\n\\fB{}\\fR(1)\n{}", roff(manual_name(inner)), paragraphs(inner.sentence));
-  // Exit codes are the same everywhere, and said by the program.
+  // Exit codes are the same for all verbs and part of the program's page.
   const std::string& footer = verb.footer.empty() ? program.footer : verb.footer;
   if (!footer.empty()) text += fmt::format(".SH NOTES\n{}", paragraphs(footer));
   if (!verb.path.empty())

@@ -1,4 +1,4 @@
-// Verbs that write what a shell and man read of this program.
+// Verbs that write completion scripts and manual pages.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"
@@ -7,7 +7,7 @@ namespace fusebench::cli::shell {
 
 /// Both describe the verbs that `app` has when they run.
 [[nodiscard]] console::Verb add_completion_verb(CLI::App& app);
-/// Hidden: packages are built with it.
+/// Hidden; used to build packages.
 [[nodiscard]] console::Verb add_manual_verb(CLI::App& app);
 
 }  // namespace fusebench::cli::shell

@@ -24,7 +24,7 @@ std::vector<std::string> listed_words(const std::string& type) {
   return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
 }
 
-/// Words that the parser does not list, because an error about them says more than a parser can.
+/// Words that the parser does not check, because the verb has a better error message.
 std::vector<std::string> known_words(const std::vector<std::string>& flags) {
   std::vector<std::string> words;
   if (std::ranges::find(flags, "--variant") != flags.end()) {

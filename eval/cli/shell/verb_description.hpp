@@ -1,5 +1,4 @@
-// The verbs and options of the program as data, read from its parser: what manual pages and completions are
-// written from.
+// The verbs and options of the program as data, read from its parser, for manual pages and completions.
 #pragma once
 
 #include <string>
@@ -11,7 +10,7 @@ class App;
 
 namespace fusebench::cli::shell {
 
-/// What a shell can propose for a value.
+/// The completion of a value.
 enum class ValueKind {
   none,  ///< a flag takes no value
   words,
@@ -21,7 +20,7 @@ enum class ValueKind {
 };
 
 struct OptionDescription {
-  std::vector<std::string> flags;  ///< "-o", "--out"; empty of what goes by its place
+  std::vector<std::string> flags;  ///< "-o", "--out"; empty for positionals
   std::string name;                ///< "-o,--out" or "RECORDING", as help texts have it
   std::string value;               ///< what follows the name in help texts: "DIR=results/runs"
   std::string sentence;
@@ -39,7 +38,7 @@ struct VerbDescription {
   std::string sentence;
   std::string usage;  ///< "fusebench eval ate [OPTIONS] GT EST"
   std::string footer;
-  std::vector<OptionDescription> places;  ///< what goes by its place, in its order
+  std::vector<OptionDescription> places;  ///< positionals in their order
   std::vector<OptionDescription> options;
   std::vector<VerbDescription> verbs;
 };

@@ -1,4 +1,4 @@
-// How the estimate is aligned: our --align MODE, and evo's flags.
+// Options for the alignment of the estimate: --align MODE, and evo's flags.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ inline constexpr std::array<std::pair<const char*, trajectory_error::AlignmentMo
      {"yaw", trajectory_error::AlignmentMode::yaw},
      {"origin", trajectory_error::AlignmentMode::origin}}};
 
-/// The names, for a parser that lets no other through.
+/// The names, for the parser's check.
 template <typename T, std::size_t N>
 std::vector<std::string> names_of(const std::array<std::pair<const char*, T>, N>& names) {
   std::vector<std::string> list;
@@ -42,18 +42,18 @@ std::vector<std::string> names_of(const std::array<std::pair<const char*, T>, N>
   return list;
 }
 
-/// The value of a name that the parser has let through.
+/// The value of a name that the parser has accepted.
 template <typename T, std::size_t N>
 T named(const std::array<std::pair<const char*, T>, N>& names, const std::string& name) {
   for (const auto& [known, value] : names) {
     if (name == known) return value;
   }
-  return names.front().second;  // the parser lets no other name through
+  return names.front().second;  // the parser accepts no other name
 }
 
 void add_alignment_options(CLI::App& verb, AlignmentOptions& options);
 
-/// What the options make of a protocol's own alignment. Error usage for options that exclude each other.
+/// A protocol's alignment with the changes by the options. Error usage for options that exclude each other.
 [[nodiscard]] Result<trajectory_error::AlignmentRequest> aligned_by(const AlignmentOptions& options,
                                                                     trajectory_error::AlignmentRequest usual);
 

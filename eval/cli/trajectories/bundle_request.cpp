@@ -79,8 +79,6 @@ Result<Bundle> load_all(const BundleOptions& options, Transcript& transcript) {
 }
 
 Result<void> check_reference(const BundleOptions& options, const Bundle& bundle) {
-  if (options.alignment.n_to_align > 0 && !options.alignment.asked())
-    return fail(ErrorCode::usage, "--n_to_align without an alignment", "-a, -s or --align MODE aligns");
   if ((options.alignment.asked() || options.sync) && !bundle.has_reference)
     return fail(ErrorCode::usage,
                 fmt::format("{} needs a reference", options.sync ? "--sync" : "an alignment"),
@@ -94,7 +92,7 @@ Result<void> check_reference(const BundleOptions& options, const Bundle& bundle)
   return {};
 }
 
-/// Associated with the reference where that is asked for, aligned and projected.
+/// Associates with the reference if requested, aligns and projects.
 Result<Trajectory> brought_to(const Trajectory& reference, const Trajectory& poses,
                               const BundleOptions& options, bool has_stamps) {
   const auto alignment = aligned_by(options.alignment, {});
@@ -177,7 +175,7 @@ Result<void> save_bundle(const BundleOptions& options, const Bundle& bundle, Tra
         return fail(ErrorCode::usage, fmt::format("two trajectories would be written into {}", file.string()),
                     "give their files different names, or save them one by one");
       if (std::filesystem::equivalent(file, entry.file, ignored))
-        return fail(ErrorCode::usage, fmt::format("{} would be replaced by what was made of it", entry.file),
+        return fail(ErrorCode::usage, fmt::format("{} would be replaced by its own result", entry.file),
                     "run it in another folder: results go into the current one");
       outputs.emplace_back(file, tum ? trajectory::tum_text(entry.trajectory.poses)
                                      : trajectory_files::kitti_text(entry.trajectory.poses));

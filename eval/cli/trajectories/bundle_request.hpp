@@ -14,7 +14,7 @@
 
 namespace fusebench::cli::trajectories {
 
-/// What the command line says, by the names of its options.
+/// The options as given, by their names.
 struct BundleOptions {
   std::vector<std::string> files;
   std::string format;

@@ -8,6 +8,7 @@
 #include "eval/cli/trajectories/clock_request.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
+#include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/metric_reports/trajectories_plot.hpp"
@@ -27,18 +28,28 @@ metric_reports::TrajectoriesPlot plot_of(const Bundle& bundle, const std::string
   return plot;
 }
 
-Result<int> run_traj(BundleOptions options) {
+Result<int> run_traj(const CLI::App& verb, BundleOptions options) {
   if (auto taken = take_leading_format(options.files, options.format); !taken)
     return tl::unexpected(taken.error());
   if (options.files.empty() && options.reference.empty())
     return fail(
         ErrorCode::usage, "no trajectory is given",
-        "`fusebench eval traj FILE...`; a format may stand before them: tum, kitti, euroc, log or openvins");
+        "`fusebench eval traj FILE...`, with an optional format first: tum, kitti, euroc, log or openvins");
   const auto plots = plot_files(options.plot);
   if (!plots) return tl::unexpected(plots.error());
   Transcript transcript(options.transcript);
   const auto bundle = bundle_of(options, transcript);
   if (!bundle) return tl::unexpected(bundle.error());
+  OptionContext context{.request = {},
+                        .has_stamps = bundle->has_stamps,
+                        .associates = options.alignment.asked() || options.sync,
+                        .draws = !plots->empty()};
+  const auto alignment = aligned_by(options.alignment, {});
+  if (!alignment) return tl::unexpected(alignment.error());
+  context.request.alignment = *alignment;
+  const auto without_effect = warnings_of_effects(verb, context);
+  if (!without_effect) return tl::unexpected(without_effect.error());
+  transcript.warn(*without_effect);
   std::vector<metric_reports::ListedTrajectory> listed;
   for (const NamedFile& entry : bundle->trajectories) listed.push_back(entry.trajectory);
   if (auto saved = save_bundle(options, *bundle, transcript); !saved) return tl::unexpected(saved.error());
@@ -61,17 +72,17 @@ Result<int> run_traj(BundleOptions options) {
 
 void add_bundle_options(CLI::App& verb, BundleOptions& options) {
   verb.add_option("FILES", options.files,
-                  "Trajectories; a format may stand before them, as with evo: tum a.txt b.txt")
+                  "Trajectories, with an optional format first, as in evo: tum a.txt b.txt")
       ->type_name("");
   verb.add_option("--format", options.format,
                   "Format of all files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
   verb.add_option("--stamp_unit", options.stamp_unit, kStampUnitHelp)->type_name("UNIT[,UNIT]");
   verb.add_option("--ref", options.reference,
-                  "The reference, which the others are aligned to and which is listed last")
+                  "The reference; the others are aligned to it, and it is listed last")
       ->type_name("FILE");
   add_alignment_options(verb, options.alignment);
-  verb.add_flag("--sync", options.sync, "Keeps of each the poses that the reference has a stamp for");
+  verb.add_flag("--sync", options.sync, "Keeps only poses with a stamp of the reference");
   verb.add_option("--t_max_diff", options.t_max_diff, "Largest difference of stamps")
       ->check(console::not_negative())
       ->type_name("S")
@@ -123,7 +134,7 @@ console::Verb add_eval_traj_verb(CLI::App& eval) {
   add_bundle_options(*verb, *options);
   add_bundle_outputs(*verb, *options);
   verb->footer("docs/evo.md lists evo's flags. Exit code 3 for files that cannot be read or aligned.");
-  return {verb, [options] { return run_traj(*options); }};
+  return {verb, [verb, options] { return run_traj(*verb, *options); }};
 }
 
 }  // namespace fusebench::cli::trajectories

@@ -14,6 +14,7 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/trajectories/clock_request.hpp"
+#include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/evo_results/result_archive.hpp"
@@ -62,10 +63,9 @@ std::string errors_text(const trajectory_error::ErrorSeries& series) {
 void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Transcript& transcript) {
   constexpr double kFew = 0.5;
   if (evaluation.coverage >= kFew) return;
-  transcript.warn(
-      {fmt::format("only {} of {} possible pairs were compared ({:.1f} %): the numbers say little "
-                   "about the rest",
-                   evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
+  transcript.warn({fmt::format(
+      "only {} of {} possible pairs were compared ({:.1f} %): the numbers do not describe the rest",
+      evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
 }
 
 /// evo aligns these without a word; the numbers are those of noise or of another unit.
@@ -139,7 +139,7 @@ Result<void> write_files(const TrajectoryOptions& options, const Sides& sides,
   });
 }
 
-Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
+Result<int> run(const CLI::App& verb, TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
   if (auto taken = take_two_files(options); !taken) return tl::unexpected(taken.error());
   std::vector<std::string> warnings;
   auto request = request_of(options, metric, warnings);
@@ -151,6 +151,13 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   const auto sides = load(options, request->protocol, transcript);
   if (!sides) return tl::unexpected(sides.error());
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
+  const auto without_effect =
+      warnings_of_effects(verb, {.request = *request,
+                                 .has_stamps = sides->have_stamps(),
+                                 .draws = !plots->empty(),
+                                 .draws_over_distance = options.error_plot.abscissa == "distances"});
+  if (!without_effect) return tl::unexpected(without_effect.error());
+  transcript.warn(*without_effect);
   auto evaluation = trajectory_error::evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
   std::optional<reference_clock::ReferenceClock> clock;
@@ -177,7 +184,7 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
 
 void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("GT EST", options.files,
-                  "Reference and estimate; a format may stand before them, as with evo: tum ref.txt est.txt")
+                  "Reference and estimate, with an optional format first, as in evo: tum ref.txt est.txt")
       ->type_name("");
   verb.add_option("--format", options.format,
                   "Format of both files: tum, kitti, euroc, log or openvins; recognised if not given")
@@ -233,10 +240,9 @@ void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
 }
 
 void add_offset_option(CLI::App& verb, TrajectoryOptions& options) {
-  verb.add_flag(
-      "--fit_offset", options.fit_offset,
-      "Also gives the error after SE3 alignment and a fitted offset of the reference's body from the "
-      "camera (markers of a motion capture), with its standard deviations");
+  verb.add_flag("--fit_offset", options.fit_offset,
+                "Also computes the error after SE3 alignment with a fitted offset between camera and "
+                "motion-capture body, with its standard deviations");
 }
 
 void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
@@ -263,14 +269,16 @@ void add_error_plot_options(CLI::App& verb, ErrorPlotOptions& options) {
       ->capture_default_str();
   verb.add_option("--plot_colormap_min", options.colour_min, "Error of the first colour; default: the least")
       ->type_name("E");
-  verb.add_option("--plot_colormap_max", options.colour_max, "Error of the last colour; default: the largest")
-      ->type_name("E");
+  auto* largest = verb.add_option("--plot_colormap_max", options.colour_max,
+                                  "Error of the last colour; default: the largest")
+                      ->type_name("E");
   verb.add_option("--plot_colormap_max_percentile", options.colour_max_percentile,
                   "Percentile of the errors for the last colour, in place of --plot_colormap_max")
       ->check(console::number_range(0.0, 100.0))
+      ->excludes(largest)
       ->type_name("P");
   verb.add_flag("--plot_full_ref", options.full_reference,
-                "Draws all of the reference, not only what was compared");
+                "Draws the whole reference instead of the compared part");
 }
 
 console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, const char* description) {
@@ -282,10 +290,9 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
     add_motion_options(*verb, *options);
   else
     add_offset_option(*verb, *options);
-  add_clock_option(
-      *verb, options->fit_time_offset,
-      "Also gives the errors with the fitted offset of the reference's clock (after --t_offset), with "
-      "its standard deviation");
+  add_clock_option(*verb, options->fit_time_offset,
+                   "Also computes the errors with a fitted offset of the reference's clock (after "
+                   "--t_offset), with its standard deviation");
   options->plot.usual_file = metric == trajectory_error::TrajectoryMetric::ate ? "ape.svg" : "rpe.svg";
   add_plot_options(*verb, options->plot);
   add_error_plot_options(*verb, options->error_plot);
@@ -295,11 +302,11 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");
   add_transcript_options(*verb, options->transcript, kAlwaysComplete);
   console::add_json_flag(*verb, options->json);
-  verb->add_flag("--all_errors", options->all_errors, "Lists each error with its stamp in --json as well");
+  verb->add_flag("--all_errors", options->all_errors, "With --json: also lists each error with its stamp");
   verb->footer(
       "docs/metrics.md defines the protocols, docs/evo.md lists evo's flags. Exit code 3 for files that "
       "cannot be compared.");
-  return {verb, [options, metric] { return run(*options, metric); }};
+  return {verb, [verb, options, metric] { return run(*verb, *options, metric); }};
 }
 
 }  // namespace

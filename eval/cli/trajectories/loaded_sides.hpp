@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
+#include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::cli::trajectories {
 
@@ -15,9 +16,13 @@ struct Sides {
   trajectory_files::LoadedTrajectory reference;
   trajectory_files::LoadedTrajectory estimate;
   [[nodiscard]] bool have_stamps() const { return reference.has_stamps() && estimate.has_stamps(); }
+  [[nodiscard]] trajectory_files::AssociationRule rule_without_stamps() const {
+    return reference.has_numbers() || estimate.has_numbers() ? trajectory_files::AssociationRule::number
+                                                             : trajectory_files::AssociationRule::index;
+  }
 };
 
-/// How the two files are read; what is not given is recognised.
+/// Reading options of the two files; formats that are not given are recognised.
 struct SideReadings {
   trajectory_files::TrajectoryReading reference = {};
   trajectory_files::TrajectoryReading estimate = {};
@@ -27,9 +32,8 @@ struct SideReadings {
 /// and of the estimate. Nothing if the text is empty. Error usage for another name or more than two.
 [[nodiscard]] Result<void> set_stamp_units(const std::string& units, SideReadings& readings);
 inline constexpr const char* kStampUnitHelp =
-    "Unit of stamps: s, ms, us or ns, where names in the file do not say it. Files with decimals that the "
-    "unit "
-    "does not have stay in seconds; REF,EST gives it for either side. Default: by their size if since 1970";
+    "Unit of stamps: s, ms, us or ns, unless column names in the file contain it. Files with more decimals "
+    "than the unit has stay in seconds; REF,EST sets each side. Default: by their size if since 1970";
 
 /// For reports.
 [[nodiscard]] metric_reports::ComparedFiles compared_files(const std::string& reference,
@@ -40,7 +44,7 @@ inline constexpr const char* kStampUnitHelp =
                                        const std::filesystem::path& estimate, const SideReadings& readings,
                                        std::vector<std::string>& warnings);
 
-/// The same, with what was noticed printed as warnings.
+/// Reads both and prints the warnings.
 [[nodiscard]] Result<Sides> load_sides(const std::filesystem::path& reference,
                                        const std::filesystem::path& estimate);
 

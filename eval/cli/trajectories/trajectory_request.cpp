@@ -23,7 +23,7 @@ Result<void> set_association(const TrajectoryOptions& options, trajectory_error:
   if (options.t_end) association.end_s = *options.t_end;
   if (options.images.empty()) return {};
   if (request.protocol != trajectory_error::Protocol::eth3d)
-    return fail(ErrorCode::usage, "--images is for --protocol eth3d, which compares at the stamps of images");
+    return fail(ErrorCode::usage, "--images requires --protocol eth3d");
   auto stamps = trajectory_files::read_stamps(options.images, warnings);
   if (!stamps) return tl::unexpected(stamps.error());
   association.evaluated_ns = std::move(*stamps);
@@ -35,10 +35,11 @@ Result<void> set_motions(const TrajectoryOptions& options, trajectory_error::Tra
       options.delta || !options.delta_unit.empty() || options.all_pairs || options.pairs_from_reference;
   if (request.motions == trajectory_error::MotionRule::segments) {
     if (!asked) return {};
-    return fail(ErrorCode::usage,
-                fmt::format("protocol {} compares segments of its own lengths",
-                            trajectory_error::to_string(request.protocol)),
-                "--delta, --delta_unit, --all_pairs and --pairs_from_reference are for evo and tum");
+    return fail(
+        ErrorCode::usage,
+        fmt::format("protocol {} uses segments of fixed lengths",
+                    trajectory_error::to_string(request.protocol)),
+        "--delta, --delta_unit, --all_pairs and --pairs_from_reference require --protocol evo or tum");
   }
   if (!options.delta_unit.empty()) {
     const auto unit = trajectory_error::parse_delta_unit(options.delta_unit);
@@ -66,15 +67,15 @@ Result<void> take_two_files(TrajectoryOptions& options) {
     return trajectory_files::parse_trajectory_format(options.files.front()).map([](auto) {});
   return fail(
       ErrorCode::usage,
-      fmt::format("two files are compared, GT and EST, and {} {} given", count, count == 1 ? "is" : "are"),
-      "a format may stand before them: tum, kitti, euroc, log or openvins");
+      fmt::format("two files are required, GT and EST; {} {} given", count, count == 1 ? "is" : "are"),
+      "an optional format comes first: tum, kitti, euroc, log or openvins");
 }
 
 Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& options,
                                                        trajectory_error::TrajectoryMetric metric,
                                                        std::vector<std::string>& warnings) {
   if (options.all_errors && !options.json)
-    return fail(ErrorCode::usage, "--all_errors is for --json",
+    return fail(ErrorCode::usage, "--all_errors requires --json",
                 "--errors FILE.csv writes each error with its stamp");
   const auto protocol = trajectory_error::parse_protocol(options.protocol);
   if (!protocol) return tl::unexpected(protocol.error());
@@ -123,10 +124,11 @@ Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest
                         request.delta.unit == trajectory_error::DeltaUnit::seconds);
   if (by_time || request.association.rule == trajectory_files::AssociationRule::held ||
       request.association.rule == trajectory_files::AssociationRule::interpolated) {
-    return fail(ErrorCode::usage, "poses without stamps (kitti) cannot be compared by time",
-                "`--protocol evo` goes by the number of the pose, with --delta in frames, metres or degrees");
+    return fail(
+        ErrorCode::usage, "poses without stamps (kitti) cannot be compared by time",
+        "`--protocol evo` associates poses by their index, with --delta in frames, metres or degrees");
   }
-  request.association.rule = trajectory_files::AssociationRule::index;
+  request.association.rule = sides.rule_without_stamps();
   return {};
 }
 

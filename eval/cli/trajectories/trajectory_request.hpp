@@ -1,4 +1,4 @@
-// From the options of `fusebench eval ate` and `rpe` to what is to be evaluated.
+// The request of `fusebench eval ate` and `rpe` from their options.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct ErrorPlotOptions {
   bool full_reference = false;
 };
 
-/// What the command line says, by the names of its options.
+/// The options as given, by their names.
 struct TrajectoryOptions {
   std::vector<std::string> files;  ///< reference and estimate; before them, as evo has it, perhaps a format
   std::string format;
@@ -81,18 +81,17 @@ inline constexpr std::array<std::pair<const char*, metric_reports::PlotAbscissa>
      {"index", metric_reports::PlotAbscissa::index},
      {"distances", metric_reports::PlotAbscissa::distances}}};
 
-/// Takes a format that stands before the files, of which two are left. Error usage if they are not, and those
+/// Removes a format before the files; two files must remain. Errors: usage for another number, and those
 /// of take_leading_format().
 [[nodiscard]] Result<void> take_two_files(TrajectoryOptions& options);
 
-/// The protocol's request, with what the options change. Error usage for options that do not go together;
+/// The protocol's request with the changes by the options. Error usage for options that do not go together;
 /// errors and warnings of read_stamps() for --images.
 [[nodiscard]] Result<trajectory_error::TrajectoryRequest> request_of(
     const TrajectoryOptions& options, trajectory_error::TrajectoryMetric metric,
     std::vector<std::string>& warnings);
 
-/// Poses without stamps are associated by their index, whatever the protocol does otherwise. Error usage if
-/// that is not possible.
+/// Associates poses without stamps by their index, for any protocol. Error usage if that is not possible.
 [[nodiscard]] Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest& request);
 
 }  // namespace fusebench::cli::trajectories

@@ -9,16 +9,21 @@
 
 #include "core/io/staged_file.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/progress.hpp"
 
 namespace fusebench::cli::trajectories {
 
 void add_transcript_options(CLI::App& verb, TranscriptOptions& options, const char* what_verbose_does) {
-  verb.add_flag("--silent", options.silent, "Prints nothing but errors");
-  verb.add_option("--logfile", options.logfile, "Appends what is printed, also with --silent")
+  verb.add_flag("--silent", options.silent, "Prints errors only");
+  verb.add_option("--logfile", options.logfile, "Appends the output to FILE, also with --silent")
       ->type_name("FILE");
   verb.add_flag("-v,--verbose,--debug", options.verbose, what_verbose_does);
   verb.add_flag("--no_warnings", options.no_warnings,
-                "Accepted for compatibility with evo: nothing asks before it writes");
+                "Accepted for compatibility with evo: files are written without a question");
+}
+
+Transcript::Transcript(const TranscriptOptions& options) : options_(options) {
+  if (options.silent) console::hide_progress();
 }
 
 void Transcript::note(std::string_view line) {
@@ -41,8 +46,8 @@ Result<void> Transcript::finish() const {
     return fail(ErrorCode::usage,
                 fmt::format("--logfile {}: a symbolic link, whose target would be changed",
                             options_.logfile.string()),
-                "name the file itself: what is printed is appended to it");
-  std::error_code ignored;  // opening says if it is not there
+                "pass the file itself: the output is appended to it");
+  std::error_code ignored;  // opening reports the error
   if (options_.logfile.has_parent_path())
     std::filesystem::create_directories(options_.logfile.parent_path(), ignored);
   std::ofstream stream(options_.logfile, std::ios::app | std::ios::binary);

@@ -1,4 +1,4 @@
-// What a verb with evo's --silent and --logfile says.
+// The output of a verb with evo's --silent and --logfile.
 #pragma once
 
 #include <filesystem>
@@ -20,19 +20,19 @@ struct TranscriptOptions {
   bool no_warnings = false;  ///< accepted, and of no effect
   std::filesystem::path logfile;
 };
-/// --silent, --logfile, -v (--verbose, --debug), and what evo needs and nothing here does: --no_warnings.
+/// --silent, --logfile, -v (--verbose, --debug), and --no_warnings, which has no effect here.
 void add_transcript_options(CLI::App& verb, TranscriptOptions& options, const char* what_verbose_does);
 inline constexpr const char* kAlwaysComplete =
     "Accepted for compatibility with evo: the output is always complete";
 
-/// Prints lines as they come, and keeps them for the log file.
+/// Prints lines and stores them for the log file.
 class Transcript {
  public:
-  explicit Transcript(const TranscriptOptions& options) : options_(options) {}
-  void note(std::string_view line);                     ///< on standard error
-  void warn(const std::vector<std::string>& warnings);  ///< each as "warning: ..."
-  void result(std::string_view text);                   ///< on standard output
-  [[nodiscard]] Result<void> finish() const;            ///< appends to the log file. Error io
+  explicit Transcript(const TranscriptOptions& options);  ///< --silent hides progress from here on
+  void note(std::string_view line);                       ///< on standard error
+  void warn(const std::vector<std::string>& warnings);    ///< each as "warning: ..."
+  void result(std::string_view text);                     ///< on standard output
+  [[nodiscard]] Result<void> finish() const;              ///< appends to the log file. Error io
 
  private:
   TranscriptOptions options_;

@@ -9,7 +9,7 @@
 
 #include "core/config/config.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
-#include "eval/record/true_camera.hpp"
+#include "eval/record/record_origin.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/our_pipeline.hpp"
 #include "tests/bench/peers/single_thread.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,6 +30,12 @@ TEST(RowText, LinesOfNamesHaveNoNumbers) {
     EXPECT_FALSE(names(line)) << line;
 }
 
+TEST(RowText, NamesOfColumns) {
+  EXPECT_EQ(column_names("\xEF\xBB\xBF# time [ns], tx (m),,\"q x\","),
+            (std::vector<std::string>{"time [ns]", "tx (m)", "", "q x"}));
+  EXPECT_EQ(as_columns(column_names("time [ns], tx (m),,q x")), "time tx column_3 qx");
+}
+
 TEST(RowText, DecimalCommasAreBetweenDigits) {
   for (const char* line :
        {"1403636579,763556 0,554494 -2,064888", "1.5 0,5 0", "0,5\t1\t1,5e-3", "1,5;2,5;0", "12,5 rgb/1.png"})
@@ -37,11 +44,24 @@ TEST(RowText, DecimalCommasAreBetweenDigits) {
     EXPECT_FALSE(has_decimal_commas(line)) << line;
 }
 
-TEST(RowText, NanInAllSpellings) {
-  for (const char* field : {"nan", "NaN", "-nan", "NAN", "nan(ind)", "-nan(snan)"})
-    EXPECT_TRUE(is_nan(field)) << field;
-  for (const char* field : {"", "inf", "nano", "1", "na", "nan(", "none"})
-    EXPECT_FALSE(is_nan(field)) << field;
+TEST(RowText, DecimalCommasBetweenCommas) {
+  for (const char* line : {"1403636579,763556,0,554494,-2,064888", "1,5, 0,05", "\"1,5\",\"0,05\"", "5,0,05"})
+    EXPECT_TRUE(has_decimal_commas(line)) << line;
+  for (const char* line : {"000012,1,0,0,-0", "1,0,00.5", "0,05,x", "0 05", "100,200,10"})
+    EXPECT_FALSE(has_decimal_commas(line)) << line;
+}
+
+TEST(RowText, MissingNumbersInAllSpellings) {
+  for (const char* field : {"", "nan", "NaN", "-nan", "NAN", "nan(ind)", "-nan(snan)", "null", "None", "NA",
+                            "n/a", "-1.#IND", "1.#QNAN"})
+    EXPECT_TRUE(is_missing(field)) << field;
+  for (const char* field : {"nano", "1", "nan(", "nonesuch", "1.", "0", "inf"})
+    EXPECT_FALSE(is_missing(field)) << field;
+}
+
+TEST(RowText, InfiniteNumbersInAllSpellings) {
+  for (const char* field : {"inf", "-Infinity", "+INF", "1.#INF00"}) EXPECT_TRUE(is_infinite(field)) << field;
+  for (const char* field : {"", "info", "nan", "1e9"}) EXPECT_FALSE(is_infinite(field)) << field;
 }
 
 }  // namespace

@@ -84,6 +84,11 @@ TEST(TextTable, ACommaAfterTheLastValueIsNoColumn) {
   EXPECT_EQ(fields.size(), 3U) << "values that are missing";
 }
 
+TEST(TextTable, QuotesAroundFieldsAreNoPartOfThem) {
+  EXPECT_EQ(read_all("\"# t\",\"name\"\n\"1\",\"a b, c\"\n\"2\" \"\"\n3,d\"e\n4,\"f\"g\n", "t name").fields,
+            (Fields{{"1", "a b, c"}, {"2", ""}, {"3", "d\"e"}, {"4", "\"f\"g"}}));
+}
+
 TEST(TextTable, MoreColumnsWhereTheyAreAllowed) {
   EXPECT_EQ(read_all("1 a x y\n2 b x y\n", "t name ...").fields, (Fields{{"1", "a"}, {"2", "b"}}));
   EXPECT_NE(read_all("1\n", "t name ...").error.find(":1: expected 2 columns or more: t name, got 1"),

@@ -1,4 +1,4 @@
-#include "core/mesh/scaled_mesh.hpp"
+#include "core/mesh/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,13 +5,15 @@
 #include <array>
 #include <string_view>
 
+#include "core/io/row_text.hpp"
+
 namespace fusebench {
 
 using namespace trajectory;
 
 namespace {
 
-Result<NamedColumns> columns_of(std::string_view line) { return columns_by_name(column_names(line)); }
+Result<NamedColumns> columns_of(std::string_view line) { return columns_by_name(io::column_names(line)); }
 
 void expect_columns(std::string_view line, const PoseColumns& expected) {
   const auto found = columns_of(line);
@@ -71,9 +73,24 @@ TEST(PoseColumns, MessagesOfRos) {
       "pose.orientation.y,pose.pose.orientation.z,pose.pose.orientation.w,twist.twist.linear.x,twist.twist."
       "angular.x",
       {.position = {2, 3, 4}, .quaternion = {5, 6, 7, 8}});
-  const auto halves = columns_of("header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw");
-  ASSERT_FALSE(halves);
-  EXPECT_NE(halves.error().message.find("the stamp is in two columns"), std::string::npos);
+}
+
+TEST(PoseColumns, StampsInTwoColumnsAreSecondsAndAFraction) {
+  const auto expect_fraction = [](std::string_view line, std::size_t seconds, std::size_t fraction,
+                                  io::TimeUnit unit) {
+    const auto found = columns_of(line);
+    ASSERT_TRUE(found) << line << ": " << found.error().message;
+    EXPECT_EQ(found->columns.stamp, seconds) << line;
+    EXPECT_EQ(found->columns.unit, io::TimeUnit::seconds) << line;
+    EXPECT_EQ(found->columns.fraction, fraction) << line;
+    EXPECT_EQ(found->columns.fraction_unit, unit) << line;
+    EXPECT_EQ(found->other_stamp, "") << line;
+  };
+  expect_fraction("header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", 0, 1, kNanoseconds);
+  expect_fraction("# sec nanosec frame_id x y z qx qy qz qw", 0, 1, kNanoseconds);
+  expect_fraction("id,time_usec,time_sec,x,y,z,qx,qy,qz,qw", 2, 1, io::TimeUnit::microseconds);
+  EXPECT_FALSE(columns_of("t_us,t_ns,x,y,z,qx,qy,qz,qw")) << "neither is in seconds";
+  expect_columns("sec,x,y,z,qx,qy,qz,qw", {.unit = io::TimeUnit::seconds});
 }
 
 TEST(PoseColumns, TablesWithColumnsBefore) {

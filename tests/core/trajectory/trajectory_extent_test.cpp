@@ -19,6 +19,18 @@ TEST(TrajectoryExtent, IsTheDiagonalOfTheBox) {
   EXPECT_DOUBLE_EQ(trajectory::extent_m(line(0, 10)), 50);
 }
 
+TEST(TrajectoryExtent, ATrackerThatStopsEarlyCoversAShareOfTheTime) {
+  const Trajectory whole = line(0, 100);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(whole, whole), 1);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(whole, line(-50, 25)), 0.25);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(whole, line(200, 300)), 0);
+  Trajectory with_hole = line(0, 30);
+  for (const StampedPose& pose : line(70, 100)) with_hole.push_back(pose);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(whole, with_hole), 0.6);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(whole, {}), 0);
+  EXPECT_DOUBLE_EQ(trajectory::covered_share_of_time(line(7, 7), whole), 1) << "no duration";
+}
+
 TEST(TrajectoryExtent, WithinTheTimeOfAnotherTrajectoryBothEndsCount) {
   const Trajectory within = trajectory::within_time_of(line(0, 10), line(4, 6));
   ASSERT_EQ(within.size(), 3U);

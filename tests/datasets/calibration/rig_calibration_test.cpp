@@ -114,7 +114,7 @@ class AnyCalibration {
     c.color.distortion = {number(-10, 10), number(-10, 10), number(-1, 1), number(-1, 1), number(-10, 10)};
     c.color.ground_truth_offset_m = vector(-kMostLeverArm_m, kMostLeverArm_m);
     c.color.timing = {readout(), readout(), delay(), readout(), readout(), std::abs(delay())};
-    if (flip()) c.depth_units_per_metre = number(1e-3, 1e6);
+    if (flip()) c.depth_units_per_metre = number(0.1, 1e6);
     if (flip()) c.depth = DepthCamera{pinhole(true), transform()};
     if (flip())
       c.imu = ImuCalibration{transform(),
@@ -265,7 +265,9 @@ TEST(RigCalibration, ErrorsNameThePlace) {
   EXPECT_EQ(refusal(with_color("readout_s = 33\n")),
             "c.toml:6: color.readout_s must be a number from 0 to 1");
   EXPECT_EQ(refusal(with_color("[depth]\nunits_per_metre = 0\n")),
-            "c.toml:7: depth.units_per_metre must be a number from 0.001 to 1000000");
+            "c.toml:7: depth.units_per_metre = 0 (allowed: 0.1 to 1000000 units per metre)");
+  EXPECT_EQ(refusal(with_color("[depth]\nunits_per_metre = 0.001\n")),
+            "c.toml:7: depth.units_per_metre = 0.001 (allowed: 0.1 to 1000000 units per metre)");
   EXPECT_EQ(refusal("calibration_source = 3\n" + std::string(kColor)),
             "c.toml:1: calibration_source must be a text");
   EXPECT_EQ(refusal(with_color("[imu]\nT_imu_color = " + std::string(kIdentity))),

@@ -1,18 +1,14 @@
-#include "datasets/exports/infinitam_export.hpp"
-
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "datasets/calibration/infinitam_calibration.hpp"
 #include "datasets/exports/export_recording.hpp"
-#include "datasets/exports/pnm_file.hpp"
 #include "tests/datasets/exports/made_recording.hpp"
-#include "tests/support/expect_text.hpp"
 
 namespace fusebench {
 
 using namespace exports;
 using namespace std::string_literals;
-using testing::expect_contains;
 using testing::made_frame;
 using testing::made_recording;
 
@@ -21,23 +17,20 @@ namespace {
 class InfinitamExport : public testing::InTemporaryFolder {
  protected:
   const std::filesystem::path out_ = folder_ / "room";
-  [[nodiscard]] std::string mask(std::string_view relative) const { return (out_ / relative).string(); }
 };
 
-TEST_F(InfinitamExport, FramesComeBackByTheirMasks) {
+TEST_F(InfinitamExport, FramesAreStoredByTheirNumbers) {
   ASSERT_TRUE(export_recording(made_recording(8, 6, 3), ExportFormat::infinitam, out_));
   for (int k = 0; k < 3; ++k) {
-    const auto frame = read_infinitam_frame(mask(kInfinitamColorMask), mask(kInfinitamDepthMask),
-                                            static_cast<std::size_t>(k));
-    ASSERT_TRUE(frame) << frame.error().message;
-    ASSERT_TRUE(*frame);
     const RgbdFrame made = made_frame(8, 6, k);
-    EXPECT_EQ((*frame)->color.data, made.color.data);
-    EXPECT_EQ((*frame)->depth_mm.data, testing::stored_depth(made, 1000, 32000).data);
+    std::string color = "P6\n8 6\n255\n", depth = "P5\n8 6\n65535\n";
+    for (const Rgb& pixel : made.color.data) color += {char(pixel.r), char(pixel.g), char(pixel.b)};
+    for (const std::uint16_t value : testing::stored_depth(made, 1000, 32000).data)
+      depth += {char(value / 256), char(value % 256)};
+    EXPECT_EQ(testing::read_bytes(out_ / fmt::format("color/000{}.ppm", k)), color);
+    EXPECT_EQ(testing::read_bytes(out_ / fmt::format("depth/000{}.pgm", k)), depth);
   }
-  const auto after = read_infinitam_frame(mask(kInfinitamColorMask), mask(kInfinitamDepthMask), 3);
-  ASSERT_TRUE(after);
-  EXPECT_FALSE(*after);
+  EXPECT_FALSE(std::filesystem::exists(out_ / "color/0003.ppm"));
 }
 
 TEST_F(InfinitamExport, ImagesAreNetpbmWithBigEndianDepth) {
@@ -76,38 +69,6 @@ TEST_F(InfinitamExport, NeverWritesInertialFiles) {
                                              "depth/0000.pgm", "depth/0001.pgm", "frame_times.txt"}));
   EXPECT_EQ(testing::read_bytes(out_ / "frame_times.txt"),
             "# frame timestamp [s]\n0 1000.000000000\n1 1000.040000000\n");
-}
-
-TEST(MaskedName, IsThatOfPrintf) {
-  EXPECT_EQ(masked_name("a/%04i.ppm", 7).value(), "a/0007.ppm");
-  EXPECT_EQ(masked_name("a/%04i.ppm", 12345).value(), "a/12345.ppm");
-  EXPECT_EQ(masked_name("%d", 7).value(), "7");
-  for (const char* mask : {"a.ppm", "%", "%04i%04i", "%4x", "%-4i", "%99999i", "%4i"}) {
-    const auto name = masked_name(mask, 7);
-    ASSERT_FALSE(name) << mask;
-    EXPECT_EQ(name.error().code, ErrorCode::usage);
-  }
-}
-
-class PnmFile : public testing::InTemporaryFolder {};
-
-TEST_F(PnmFile, HeadersMayHaveCommentsAndAnyWhiteSpace) {
-  const auto image = read_pgm(write("a.pgm", "P5 # depth\n# of 2 pixels\n2\t1\r\n65535\n\x01\x02\x03\x04"));
-  ASSERT_TRUE(image) << image.error().message;
-  EXPECT_EQ(image->width, 2);
-  EXPECT_EQ(image->data, (std::vector<std::uint16_t>{0x0102, 0x0304}));
-}
-
-TEST_F(PnmFile, DamageIsAnError) {
-  for (const std::string& bytes :
-       {""s, "P6\n2 1\n65535\n1234"s, "P5\n2 1\n255\n12"s, "P5\n2 1\n65535\n123"s, "P5\n0 1\n65535\n"s,
-        "P5\n99999 99999\n65535\n"s, "P5\n2"s, "P5\n2 1\n65535"s, "P5 # unfinished"s}) {
-    const auto image = read_pgm(write("damaged.pgm", bytes));
-    ASSERT_FALSE(image) << bytes;
-    EXPECT_EQ(image.error().code, ErrorCode::data_corrupt);
-    expect_contains(image.error().message, "damaged.pgm: ");
-  }
-  EXPECT_EQ(read_ppm(folder_ / "missing.ppm").error().code, ErrorCode::data_missing);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-#include "datasets/exports/sens_export.hpp"
+#include "datasets/exports/export_formats.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "datasets/exports/export_recording.hpp"
+#include "datasets/image_logs/sens_log.hpp"
 #include "datasets/images/image_files.hpp"
 #include "tests/datasets/exports/made_recording.hpp"
 #include "tests/support/expect_text.hpp"

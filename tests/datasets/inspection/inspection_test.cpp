@@ -63,7 +63,6 @@ TEST(Inspection, FiveRightFramesDoNotSayThatDepthIsMisregistered) {
   const Inspection result = inspected(*recording);
   ASSERT_TRUE(result.registration);
   EXPECT_EQ(result.registration->frames, 5U);
-  EXPECT_GT(result.registration->spread_px, result.registration->moved_px / 2) << "the halves disagree";
   EXPECT_FALSE(result.has("depth-misregistered"));
 }
 

@@ -425,7 +425,7 @@ TEST(PlantedFaults, DepthThatIsNotRegistered) {
   const Inspection result = inspected(recording);
   EXPECT_THAT(faults(result), ElementsAre("depth-misregistered"));
   ASSERT_TRUE(result.registration);
-  EXPECT_NEAR(result.registration->moved_px, 16, 1);
+  EXPECT_NEAR(result.registration->moved_px, 16, 2);
   EXPECT_NEAR(result.registration->fitted.pinhole.cx_px, cx_px + 16, 4);
 }
 

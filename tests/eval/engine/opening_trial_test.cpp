@@ -1,5 +1,5 @@
 // Recordings that hang when they are opened, or take all memory: a hang is played by waiting for ever.
-#include "eval/engine/opening_trial.hpp"
+#include "eval/engine/opened_recordings.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -88,7 +88,7 @@ TEST_F(SystemTrajectoryFile, MillimetresAndInversePosesBecomeMetresInTheWorld) {
 TEST_F(SystemTrajectoryFile, AUnitThatCannotBeIsRefusedAndOneThatMayBeIsAWarning) {
   const auto large = read("poses.txt", along_x(1000));
   ASSERT_FALSE(large.has_value());
-  expect_contains(large.error().message, "over 2e+03 m, and the truth over 2 m");
+  expect_contains(large.error().message, "over 2e+03 m, and the ground truth over 2 m");
   const auto small = read("poses.txt", along_x(1e-3));
   ASSERT_TRUE(small.has_value());
   ASSERT_EQ(warnings_.size(), 1);

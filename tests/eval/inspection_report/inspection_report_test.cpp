@@ -66,19 +66,19 @@ TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {
   inspection::measures::RegistrationFit fit;
   fit.better_share = 1;
   fit.moved_px = 25;
-  fit.spread_px = 3;
+  fit.sigma_px = 3;
   EXPECT_TRUE(check_determined(fit, recording).has_value());
   EXPECT_THAT(depth_camera_text(fit, recording), HasSubstr("the depth camera is determined"));
   fit.moved_px = 13.2;
-  fit.spread_px = 17.3;
+  fit.sigma_px = 17.3;
   const auto refused = check_determined(fit, recording);
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::run_failed);
-  EXPECT_THAT(refused.error().message, HasSubstr("edges move 13.2 px, and by 17.3 px"));
+  EXPECT_THAT(refused.error().message, HasSubstr("edges move 13.2 +- 17.3 px"));
   EXPECT_FALSE(nlohmann::json::parse(depth_camera_json(fit, recording)).at("determined").get<bool>());
-  fit.spread_px = 3;
+  fit.sigma_px = 3;
   fit.better_share = 0.67;
-  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("in 67 % of the frames only"));
+  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("in only 67 % of the frames"));
   EXPECT_THAT(depth_camera_text(fit, recording), HasSubstr("not determined"));
 }
 

@@ -99,7 +99,7 @@ TEST(MeshEvaluation, AnIcpWithoutAStartThatEndedFarFromTheTruthIsDoubted) {
   request.icp = RegistrationOptions{};
   const auto loose = evaluate_mesh(sphere(1.03, 30), sphere(1, 30), request, workers);
   ASSERT_TRUE(loose.has_value()) << loose.error().message;
-  EXPECT_NE(loose->icp_doubt.find("m (rms) from the truth"), std::string::npos) << loose->icp_doubt;
+  EXPECT_NE(loose->icp_doubt.find("m (rms) from the ground truth"), std::string::npos) << loose->icp_doubt;
   EXPECT_EQ(evaluate_mesh(sphere(1.01, 30), sphere(1, 30), request, workers)->icp_doubt, "");
 }
 
@@ -119,7 +119,7 @@ TEST(MeshEvaluation, TellsBothWithAndWithoutCulling) {
   request.least_observed = 0.5;
   const auto refused = evaluate_mesh(half, sphere(1, 30), request, workers);
   ASSERT_FALSE(refused.has_value());
-  EXPECT_NE(refused.error().message.find("% of the true surface is observed"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("% of the ground-truth surface is observed"), std::string::npos);
 }
 
 TEST(MeshEvaluation, DistancesOfVerticesOnRequest) {

@@ -1,4 +1,4 @@
-#include "eval/record/record_camera.hpp"
+#include "eval/record/record_parts.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

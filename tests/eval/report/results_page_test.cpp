@@ -12,6 +12,7 @@
 #include "eval/run_charts/loop_charts.hpp"
 #include "eval/run_charts/profile_charts.hpp"
 #include "eval/run_charts/run_charts.hpp"
+#include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_meshes.hpp"
 
@@ -221,6 +222,27 @@ TEST_F(ResultsPageTest, AModelHasTheWayOfItsCameraAndItsBoxAndTheSameColourAsIts
   EXPECT_NEAR((scene.paths[0].poses[30].T_scene_camera.translation - T_first_30.translation).norm(), 0, 1e-6);
   EXPECT_NEAR(scene.paths[0].poses[30].time_s, 30 * 0.033, 1e-6);
   EXPECT_TRUE((scene.high.array() > scene.low.array()).all());
+}
+
+TEST_F(ResultsPageTest, WritesAPictureOfEachModelAndLinksIt) {
+  const FoundRun run = add_run("full", kFrames, SE3{});
+  std::vector<std::string> names;
+  const PictureWriter writer = [&](const std::string& name,
+                                   const ColorImage& picture) -> Result<std::string> {
+    EXPECT_EQ(picture.width, 800);
+    names.push_back(name);
+    return name + ".png";
+  };
+  const ResultsPage result = results_page({run}, "Circles", {}, writer);
+  EXPECT_EQ(names, std::vector<std::string>{"circle_full"});
+  const std::string html = to_html(result.page);
+  std::size_t links = 0;
+  for (std::size_t at = html.find("<a href=\"circle_full.png\">"); at != std::string::npos; ++links)
+    at = html.find("<a href=\"circle_full.png\">", at + 1);
+  EXPECT_EQ(links, 2U) << "in the overview and among the runs of the recording";
+  // The page itself has it where meshes cannot be drawn.
+  testing::expect_contains(html, "<img alt=\"model: full\" src=\"data:image/png;base64,");
+  EXPECT_EQ(to_html(results_page({run}, "Circles").page).find("href=\"circle_full"), std::string::npos);
 }
 
 TEST_F(ResultsPageTest, TheHeadSaysWhatWasFoundBeforeAllTables) {

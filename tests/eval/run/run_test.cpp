@@ -323,7 +323,7 @@ TEST_F(RunTest, AnEditedOptionThatNeedsAnImuIsNamedWithItsPlace) {
   EXPECT_NE(prepared.error().message.find("mine.toml:12: terms.prior = \"imu\" needs an IMU"),
             std::string::npos)
       << prepared.error().message;
-  EXPECT_EQ(prepared.error().hint.find("--variant no-imu does without"), std::string::npos);
+  EXPECT_EQ(prepared.error().hint.find("--variant no-imu needs none"), std::string::npos);
 }
 
 TEST_F(RunTest, TheHashTellsConfigurationsAndWindowsApart) {

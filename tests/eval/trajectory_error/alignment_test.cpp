@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -69,6 +70,7 @@ void expect_refused(const Trajectory& reference, const Trajectory& estimate, Ali
   EXPECT_EQ(error.error().code, ErrorCode::data_corrupt);
   EXPECT_NE(error.error().message.find(why), std::string::npos) << what << ": " << error.error().message;
   EXPECT_NE(error.error().hint.find("--align origin"), std::string::npos) << error.error().hint;
+  EXPECT_NE(error.error().hint.find("in place of -a, -s"), std::string::npos) << error.error().hint;
 }
 
 /// Positions that are equal but for errors of the numbers, as files and transforms make them.
@@ -181,6 +183,20 @@ TEST(Alignment, OfYawNeedsHorizontalMotion) {
     ASSERT_TRUE(error.has_value()) << poses << ": " << error.error().message;
     EXPECT_LT(rotation_angle_rad(error->alignment.rigid.rotation, turn.rotation), 1e-9) << poses;
   }
+}
+
+TEST(Alignment, OfTheYawOfOnePoseNeedsZAxesThatAreNotOpposite) {
+  const auto one_pose = [](const Vector3d& rotation_vector) {
+    return Trajectory{{0, {so3_exp(rotation_vector), {1, 2, 3}}}};
+  };
+  constexpr double kPi = std::numbers::pi;
+  for (const double off_rad : {0.0, 1e-4, -1e-3}) {
+    expect_refused(one_pose({0, 0, 0}), one_pose({kPi + off_rad, 0, 0}), AlignmentMode::yaw,
+                   "the z axes of the only pair of poses are opposite", "upside down");
+  }
+  const auto tilted = ate_of(one_pose({0, 0, 0.7}), one_pose({kPi - 0.01, 0, 0}), AlignmentMode::yaw);
+  ASSERT_TRUE(tilted) << tilted.error().message;
+  EXPECT_NEAR(rotation_angle_rad(tilted->alignment.rigid.rotation, so3_exp({0, 0, 0.7})), 0, 1e-9);
 }
 
 TEST(Alignment, OfSmallOrFlatMotionIsFound) {

@@ -39,6 +39,20 @@ TEST_F(LogTrajectory, ReadsPosesByTheNumberOfTheirFrame) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST_F(LogTrajectory, LeavesOutLostFrames) {
+  std::vector<std::string> warnings;
+  const auto poses = read_log_trajectory(
+      write("t.log", "0 0 1\n" + kPose +
+                         "1 1 2\nnan nan nan nan\nnan nan nan nan\nnan nan nan nan\n0 0 0 1\n2 2 3\n" +
+                         kPose),
+      warnings);
+  ASSERT_TRUE(poses.has_value()) << poses.error().message;
+  ASSERT_EQ(poses->size(), 2U);
+  EXPECT_EQ((*poses)[1].timestamp_ns, 2);
+  ASSERT_EQ(warnings.size(), 1U);
+  testing::expect_contains(warnings[0], "t.log:10: 1 of 3 poses are of lost frames");
+}
+
 TEST_F(LogTrajectory, RefusesByLine) {
   testing::expect_contains(refused("0 0 1\n0 -1 0 0.5\n1 0 0 0.25\n"),
                            "t.log:3: the file ends within a pose");
@@ -46,8 +60,9 @@ TEST_F(LogTrajectory, RefusesByLine) {
   testing::expect_contains(refused("0 0 1\n" + kPose + "0 0 1\n" + kPose), "t.log:6: frame 0 after frame 0");
   testing::expect_contains(refused("0 0 1\n0 1 0 0\n1 0 0 0\n0 0 1 0\n0 0 0 1\n"),
                            "is no rotation (determinant -1");
-  testing::expect_contains(refused("0 0 1\n0 -1 0 nan\n1 0 0 0\n0 0 1 0\n0 0 0 1\n"), "t.log:2");
-  testing::expect_contains(refused("0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), "not 0 0 0 1");
+  testing::expect_contains(refused("0 0 1\n0 -1 0 x\n1 0 0 0\n0 0 1 0\n0 0 0 1\n"), "t.log:2");
+  testing::expect_contains(refused("0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"),
+                           "t.log:5: the last row of the pose is 0 0 0 2");
   testing::expect_contains(refused("0.5 0 1\n" + kPose), "an integer from 0 on");
   testing::expect_contains(refused("1e300 0 1\n" + kPose), "an integer from 0 on");
   testing::expect_contains(refused("# nothing\n"), "has no rows");

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "eval/trajectory_files/trajectory_pair.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -213,11 +214,107 @@ TEST_F(TrajectoryFormats, MoreColumnsAndCommasAtTheEnd) {
   }
 }
 
-TEST_F(TrajectoryFormats, MatricesBehindAStampAreNoQuaternions) {
-  expect_refused("1 1 0 0 0 0 1 0 0 0 0 1 0\n2 1 0 0 0 0 1 0 0 0 0 1 0\n",
-                 ":1: 13 columns are no trajectory");
-  expect_refused("0 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", ":1: 17 columns are no trajectory");
+constexpr std::string_view kQuarterTurn = "0 -1 0 1.5 1 0 0 -2 0 0 1 0.25";
+
+void expect_kitti_quarter_turn(const LoadedTrajectory& loaded, std::size_t pose) {
+  EXPECT_EQ(loaded.format, TrajectoryFormat::kitti);
+  ASSERT_GT(loaded.poses.size(), pose);
+  const SE3& T = loaded.poses[pose].T_world_camera;
+  EXPECT_TRUE(T.translation.isApprox(Vector3d(1.5, -2, 0.25)));
+  EXPECT_TRUE((T.rotation * Vector3d::UnitX()).isApprox(Vector3d::UnitY()));
+}
+
+TEST_F(TrajectoryFormats, MatricesAfterAStampOrANumber) {
+  constexpr std::string_view kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0";
+  for (const std::string& last : {std::string(), std::string(" 0 0 0 1")}) {
+    for (const auto format : {std::optional<TrajectoryFormat>(), std::optional(TrajectoryFormat::kitti)}) {
+      const auto rows = [&](std::string_view first, std::string_view second) {
+        return std::string(first) + " " + std::string(kIdentity) + last + "\n" + std::string(second) + " " +
+               std::string(kQuarterTurn) + last + "\n";
+      };
+      const auto stamped = load(rows("1305031102.5", "1305031102.75"), Duplicates::none, format);
+      ASSERT_TRUE(stamped) << stamped.error().message;
+      expect_kitti_quarter_turn(*stamped, 1);
+      EXPECT_TRUE(stamped->has_stamps());
+      EXPECT_EQ(stamped->poses[1].timestamp_ns, 1305031102750000000);
+      EXPECT_TRUE(warnings_.empty());
+      const auto nanoseconds =
+          load(rows("1305031102500000000", "1305031102750000000"), Duplicates::none, format);
+      ASSERT_TRUE(nanoseconds) << nanoseconds.error().message;
+      EXPECT_EQ(nanoseconds->poses[1].timestamp_ns, 1305031102750000000);
+      const auto numbered = load(rows("2", "4.0e+00"), Duplicates::none, format);
+      ASSERT_TRUE(numbered) << numbered.error().message;
+      expect_kitti_quarter_turn(*numbered, 1);
+      EXPECT_TRUE(numbered->has_numbers());
+      EXPECT_EQ(numbered->poses[1].timestamp_ns, 4);
+      EXPECT_NE(numbered->format_source.find("after the number of the frame"), std::string::npos);
+      const auto told = load(rows("2", "4"), Duplicates::none, format, io::TimeUnit::milliseconds);
+      ASSERT_TRUE(told) << told.error().message;
+      EXPECT_EQ(told->poses[1].timestamp_ns, 4'000'000);
+    }
+  }
+  expect_refused("1 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2\n", ":1: 17 columns are no trajectory");
   expect_refused("1403636579.5 1 2 3 4 5 6 7 8 9\n", ":1: 10 columns are no trajectory");
+}
+
+TEST_F(TrajectoryFormats, TransposedMatricesAreReadWithAWarning) {
+  const auto loaded = load("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n0 1 0 0 -1 0 0 0 0 0 1 0 1.5 -2 0.25 1\n");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  expect_kitti_quarter_turn(*loaded, 1);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find("matrices are transposed"), std::string::npos) << warnings_[0];
+  const auto numbered = load("0 0 1 0 0 -1 0 0 0 0 0 1 0 1.5 -2 0.25 1\n");
+  ASSERT_TRUE(numbered) << numbered.error().message;
+  expect_kitti_quarter_turn(*numbered, 0);
+  const auto mixed = load("0 -1 0 1.5 1 0 0 -2 0 0 1 0.25 0 0 0 1\n0 1 0 0 -1 0 0 0 0 0 1 0 1.5 -2 0.25 1\n",
+                          Duplicates::none, TrajectoryFormat::kitti);
+  ASSERT_FALSE(mixed);
+  EXPECT_NE(mixed.error().hint.find("transposed"), std::string::npos) << mixed.error().hint;
+}
+
+TEST_F(TrajectoryFormats, LostFramesOfMatricesKeepTheNumbersOfOthers) {
+  const std::string lost = "nan nan nan nan nan nan nan nan nan nan nan nan\n";
+  const auto loaded = load("1 0 0 0 0 1 0 0 0 0 1 0\n" + lost + std::string(kQuarterTurn) + "\n");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_EQ(loaded->poses.size(), 2U);
+  EXPECT_TRUE(loaded->has_numbers()) << "there is a gap";
+  EXPECT_EQ(loaded->poses[1].timestamp_ns, 2);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":2: 1 of 3 poses are of lost frames"), std::string::npos) << warnings_[0];
+  const auto whole =
+      load("1 0 0 0 0 1 0 0 0 0 1 0\n" + std::string(kQuarterTurn) + "\n" + std::string(kQuarterTurn) + "\n");
+  ASSERT_TRUE(whole);
+  const auto pair = pair_up(whole->poses, loaded->poses, {AssociationRule::number});
+  ASSERT_TRUE(pair);
+  ASSERT_EQ(pair->size(), 2U);
+  EXPECT_EQ(pair->reference[1].timestamp_ns, 2);
+  EXPECT_FALSE(load(lost)) << "no pose at all";
+}
+
+TEST_F(TrajectoryFormats, MatricesAreNotReadAsQuaternionsWhateverIsTyped) {
+  for (const auto format : {TrajectoryFormat::tum, TrajectoryFormat::openvins}) {
+    for (const char* before : {"", "1305031102.5 "}) {
+      const auto refused = load(before + std::string(kQuarterTurn) + "\n", Duplicates::none, format);
+      ASSERT_FALSE(refused) << before;
+      EXPECT_NE(refused.error().message.find("are the matrix of a pose"), std::string::npos)
+          << refused.error().message;
+      EXPECT_NE(refused.error().hint.find("say kitti"), std::string::npos) << refused.error().hint;
+    }
+  }
+}
+
+TEST_F(TrajectoryFormats, StampsMayBeInTwoColumns) {
+  constexpr std::string_view kRows =
+      "1305031102 900000000 1 2 3 0.70710678 0 0 0.70710678\n1305031102 933000000 1 2 3 0.70710678 0 0 "
+      "0.70710678\n";
+  for (const auto format : {std::optional<TrajectoryFormat>(), std::optional(TrajectoryFormat::tum)}) {
+    const auto loaded = load(kRows, Duplicates::none, format);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    expect_quarter_turn(*loaded);
+    EXPECT_EQ(loaded->poses[1].timestamp_ns, 1305031102933000000);
+    ASSERT_EQ(warnings_.size(), 1U);
+    EXPECT_NE(warnings_[0].find("seconds and nanoseconds in two columns"), std::string::npos) << warnings_[0];
+  }
 }
 
 TEST_F(TrajectoryFormats, WholeMatricesAreKitti) {
@@ -226,7 +323,7 @@ TEST_F(TrajectoryFormats, WholeMatricesAreKitti) {
   ASSERT_TRUE(whole) << whole.error().message;
   EXPECT_EQ(whole->format, TrajectoryFormat::kitti);
   EXPECT_TRUE(whole->poses[1].T_world_camera.translation.isApprox(Vector3d(1.5, -2, 0.25)));
-  const auto refused = load("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n", Duplicates::none, TrajectoryFormat::kitti);
+  const auto refused = load("1 0 0 5 0 1 0 0 0 0 1 0 0 0 1 1\n", Duplicates::none, TrajectoryFormat::kitti);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find(":1: the last row of the pose is 0 0 1 1"), std::string::npos)
       << refused.error().message;

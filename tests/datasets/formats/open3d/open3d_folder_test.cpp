@@ -95,7 +95,14 @@ TEST_F(Open3dFolder, DepthScaleAndRateOfTheRecorderAreUsed) {
   EXPECT_EQ(given->frames[1].timestamp_ns, 40'000'000);
   EXPECT_EQ(given->load_frame(1)->depth_m(5, 5), testing::made_frame(16, 12, 1).depth_m(5, 5));
   write_recorder(R"(, "fps": 0)");
-  expect_contains(refusal(), "intrinsic.json: fps = 0 (allowed: 1 to 1000)");
+  const auto unknown = open_recording(place_);
+  ASSERT_TRUE(unknown) << unknown.error().message;
+  EXPECT_EQ(unknown->frames[1].timestamp_ns, 33'333'333) << "as without fps";
+  EXPECT_TRUE(testing::any_contains(unknown->warnings, "intrinsic.json: fps = 0 is not used"));
+  write_recorder(R"(, "depth_scale": 0.00025)");
+  expect_contains(refusal(),
+                  "intrinsic.json: depth_scale = 0.00025 (allowed: 0.1 to 1000000 units per metre)");
+  EXPECT_EQ(open_recording(place_).error().hint, "0.00025 metres per unit are 4000 units per metre");
 }
 
 TEST_F(Open3dFolder, DepthScaleOfTheRecorderIsPreferredToThatOfTheReconstruction) {
@@ -121,7 +128,7 @@ TEST_F(Open3dFolder, WhatIsWrongIsNamed) {
   expect_contains(refusal(), "frame_times.txt: has no time of frame 2");
   std::filesystem::remove(place_ / "frame_times.txt");
   write("room/config.json", "{\"depth_scale\": 0}");
-  expect_contains(refusal(), "config.json: depth_scale = 0 (allowed: 0.001 to 1000000)");
+  expect_contains(refusal(), "config.json: depth_scale = 0 (allowed: 0.1 to 1000000 units per metre)");
   write("room/config.json", "{}");
   write("room/intrinsic.json", "{\"width\": 16, \"height\": 12");
   expect_contains(refusal(), "intrinsic.json: is not JSON, or not all of it is there");

@@ -50,6 +50,14 @@ class Record3d : public testing::InTemporaryFolder {
   }
 };
 
+TEST_F(Record3d, ARateOfZeroIsNotUsed) {
+  write_metadata("[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 1, 2, 3]", R"(, "fps": 0)");
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->frames[1].timestamp_ns, 33'333'333);
+  EXPECT_TRUE(testing::any_contains(recording->warnings, "metadata.json: fps = 0 is not used"));
+}
+
 TEST_F(Record3d, DepthInMetresAndPosesOfACameraWithYUp) {
   EXPECT_EQ(recognise_format(folder_), "record3d");
   EXPECT_EQ(recognise_format(folder_ / "EXR_RGBD"), "record3d");

@@ -81,6 +81,8 @@ TEST_F(ReplicaFolder, WhatIsWrongIsNamed) {
   expect_contains(refusal(), "traj.txt:1: expected 16 columns");
   write("room0/traj.txt", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1\n");
   expect_contains(refusal(), "traj.txt:1: the pose is no rigid transform");
+  write("room0/traj.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0.5 0 2 1\n");
+  expect_contains(refusal(), "so transpose a matrix with its translation there");
   write("cam_params.json", R"({"camera": {"w": 8, "h": 6}})");
   expect_contains(refusal(), "cam_params.json: needs the key fx, a finite number");
   write("cam_params.json",

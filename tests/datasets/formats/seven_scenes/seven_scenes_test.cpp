@@ -101,6 +101,8 @@ TEST_F(SevenScenes, WhatIsWrongIsNamed) {
   expect_contains(refusal().message, "frame-000001.pose.txt: has 3 rows of the 4");
   write("frame-000001.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n");
   expect_contains(refusal().message, "frame-000001.pose.txt: the pose is no rigid transform");
+  write("frame-000001.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0.5 0 2 1\n");
+  expect_contains(refusal().message, "the last row of 4x4 is 0 0 0 1");
   write("frame-000001.pose.txt", "1 0 0 x\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   expect_contains(refusal().message, "frame-000001.pose.txt:1: ");
   write("frame-000001.pose.txt", kPose);

@@ -184,6 +184,8 @@ TEST_F(StrayScanner, CameraMatrixIsUsedWhereFramesHaveNoIntrinsics) {
   }
   write("odometry.csv", names + ", fx, fy, cx, cy\n1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 2, 3\n");
   expect_contains(refusal().message, "odometry.csv:2: focal lengths fx and fy must be above 0");
+  write("odometry.csv", names + ", fx, fy, cx, cy\n1, 0, 0, 0, 0, 0, 0, 0, 1, nan, 1, 2, 3\n");
+  expect_contains(refusal().message, "odometry.csv:2: fx: expected a finite number, got 'nan'");
 }
 
 TEST_F(StrayScanner, WhatIsWrongIsNamed) {
@@ -199,7 +201,7 @@ TEST_F(StrayScanner, WhatIsWrongIsNamed) {
   write("odometry.csv", "timestamp, frame, x, y, z, qx, qy, qz, qw\n1, 0, 0, 0, 0, 0, 0, 0, 0\n");
   expect_contains(refusal().message, "odometry.csv:2: the quaternion");
   write("odometry.csv", "timestamp, frame, x, y, z, qx, qy, qz, qw\n1, 0, 0, 0, 0, 0, 0, 0\n");
-  expect_contains(refusal().message, "odometry.csv:2: expected 9 columns");
+  expect_contains(refusal().message, "odometry.csv:2: expected 9 columns: timestamp frame x y");
   write("odometry.csv", good);
   write("imu.csv", "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n2,0,0,1,0,0,0\n1,0,0,1,0,0,0\n");
   expect_contains(refusal().message, "imu.csv:3: time runs backwards");

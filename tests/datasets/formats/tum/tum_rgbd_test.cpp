@@ -82,7 +82,11 @@ TEST(TumRgbd, DepthFactor) {
   options.depth_units_per_metre = 1000;
   EXPECT_EQ(open_tum_rgbd(folder.path(), options)->load_frame(0)->depth_m(0, 0), 5.0F);
   options.depth_units_per_metre = 0;
-  expect_contains(refusal(folder, ErrorCode::configuration, options), "depth_units_per_metre = 0");
+  expect_contains(refusal(folder, ErrorCode::configuration, options),
+                  "depth_units_per_metre (--depth-units) = 0 ");
+  options.depth_units_per_metre = 0.0002;
+  expect_contains(refusal(folder, ErrorCode::configuration, options),
+                  "0.0002 metres per unit are 5000 units per metre");
   options.depth_units_per_metre = 5000;
   options.max_difference_s = -1;
   expect_contains(refusal(folder, ErrorCode::configuration, options), "max_difference_s = -1");
@@ -297,9 +301,45 @@ TEST(TumRgbd, ImagesOfAPairAreToldApartByTheirNames) {
   EXPECT_EQ(recording->load_frame(0)->depth_m(0, 0), 1);
 }
 
+TEST(TumRgbd, MoreColumnsOfListsAreLeftOutWithOneWarning) {
+  constexpr std::string_view kPosed =
+      "10.0 rgb/0.png 10.01 depth/0.png 10.0 1 2 3 0 0 0 1\n10.1 rgb/1.png 10.11 depth/1.png 10.1 1 2 3 0 0 "
+      "0 1\n";
+  const ListOfPairs posed("associate_with_groundtruth.txt", kPosed);
+  const auto pairs = posed.open();
+  ASSERT_TRUE(pairs) << pairs.error().message;
+  EXPECT_EQ(pairs->frames.size(), 2U);
+  ASSERT_EQ(pairs->warnings.size(), 1U);
+  expect_contains(pairs->warnings[0],
+                  "associate_with_groundtruth.txt:1: 8 columns after the first 4 are not used");
+  posed.folder_.write("associations.txt", "10.0 rgb/0.png 10.01 depth/0.png\n");
+  const auto plain = posed.open();
+  ASSERT_TRUE(plain) << "the plain list goes before the one that was made from it";
+  EXPECT_EQ(plain->frames.size(), 1U);
+  EXPECT_TRUE(plain->warnings.empty());
+  expect_contains(ListOfPairs("associations.txt",
+                              "10.0 rgb/0.png 10.01 depth/0.png 7\n10.1 rgb/1.png 10.11 "
+                              "depth/1.png\n")
+                      .open()
+                      .error()
+                      .message,
+                  "associations.txt:2: expected 5 columns as in line 1");
+
+  const TumFolder folder;
+  folder.write("rgb.txt",
+               "# timestamp filename exposure\n10.0 rgb/0.png 1\n10.1 rgb/1.png 1\n10.2 rgb/2.png 1\n");
+  folder.write("accelerometer.txt", "10.0 0.1 -9.8 0.2 21.5\n10.1 0 -9.8 0 21.5\n");
+  const auto lists = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(lists) << lists.error().message;
+  EXPECT_EQ(lists->frames.size(), 3U);
+  ASSERT_EQ(lists->warnings.size(), 2U);
+  expect_contains(lists->warnings[0], "rgb.txt:2: 1 columns after the first 2 are not used");
+  expect_contains(lists->warnings[1], "accelerometer.txt:1: 1 columns after the first 4 are not used");
+}
+
 TEST(TumRgbd, WhatIsWrongInAListOfPairsIsNamed) {
   expect_contains(ListOfPairs("associations.txt", "10.0 rgb/0.png\n").open("tum").error().message,
-                  "associations.txt:1: expected 4 columns");
+                  "associations.txt:1: expected 4 columns or more");
   expect_contains(
       ListOfPairs("associations.txt", "10.1 rgb/1.png 10.1 depth/1.png\n10.0 rgb/0.png 10.0 depth/0.png\n")
           .open()
@@ -339,7 +379,7 @@ TEST(TumRgbd, RefusesBadRowsWithFileAndLine) {
     return refusal(folder, ErrorCode::data_corrupt);
   };
   expect_contains(after_writing("rgb.txt", "# x\n10.0\n"),
-                  "rgb.txt:2: expected 2 columns: timestamp filename, got 1");
+                  "rgb.txt:2: expected 2 columns or more: timestamp filename, got 1");
   expect_contains(after_writing("rgb.txt", "# nothing\n"), "rgb.txt: has no rows");
   expect_contains(after_writing("rgb.txt", "10.1 rgb/0.png\n10.0 rgb/1.png\n"),
                   "rgb.txt:2: time runs backwards by 0.1 s (timestamp 10.0 after line 1)");

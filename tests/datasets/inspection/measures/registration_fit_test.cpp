@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/datasets/inspection/clean_recording.hpp"
 #include "tests/support/two_cameras.hpp"
@@ -74,6 +75,10 @@ TEST(RegistrationModel, IsWhatParallelCamerasDo) {
   EXPECT_NEAR(fitted.pinhole.cx_px, depth.pinhole.cx_px, 1e-9);
   EXPECT_NEAR(fitted.pinhole.cy_px, depth.pinhole.cy_px, 1e-9);
   EXPECT_LT((fitted.T_color_depth.translation - depth.T_color_depth.translation).norm(), 1e-12);
+  const RegistrationModel back = model_between({color, SE3{}}, fitted, color);
+  EXPECT_NEAR(back.scale, model.scale, 1e-12);
+  EXPECT_LT((back.shift_px - model.shift_px).norm(), 1e-9);
+  EXPECT_LT((back.baseline_m - model.baseline_m).norm(), 1e-12);
 }
 
 TEST(RegistrationFit, FindsTheDepthCamera) {
@@ -82,13 +87,37 @@ TEST(RegistrationFit, FindsTheDepthCamera) {
   const auto fit = fit_registration(unregistered(depth), Workers(2));
   ASSERT_TRUE(fit);
   EXPECT_GT(fit->moved_px, 8);
-  EXPECT_LT(fit->spread_px, 1.5);
+  EXPECT_LT(fit->sigma_px, 1.5);
+  EXPECT_TRUE(fit->is_significant());
   EXPECT_GT(fit->better_share, 0.9);
   EXPECT_GT(fit->strength_moved, 2 * fit->strength_as_read);
   const calibration::DepthCamera& fitted = fit->fitted;
   EXPECT_NEAR(fitted.pinhole.fx_px, 265, 3);
-  EXPECT_NEAR(fitted.T_color_depth.translation.x(), -0.03, 0.01);
-  EXPECT_NEAR(fitted.T_color_depth.translation.y(), 0, 0.01);
+  const DepthCameraSigma& sigma = fit->fitted_sigma;
+  EXPECT_LT(std::abs(fitted.pinhole.fx_px - 265), 3 * sigma.focal_length_px);
+  EXPECT_LT(std::abs(fitted.T_color_depth.translation.x() + 0.03), 3 * sigma.place_m.x());
+}
+
+/// Registered depth that is taken `delay_s` after colour.
+recording::Recording delayed(double delay_s) {
+  recording::Recording recording =
+      clean_recording({.camera = testing::small_camera(), .truth = false, .imu = false});
+  recording.load_frame = [delay_s, whole = recording.load_frame, frames = recording.frames,
+                          camera = recording.rig.camera](std::size_t k) -> Result<RgbdFrame> {
+    auto frame = whole(k);
+    const double time_s = 1e-9 * static_cast<double>(frames[k].capture_ns) + delay_s;
+    frame->depth_m =
+        testing::exact_depth(testing::TexturedRoom(), camera, SwayingMotion::T_world_camera(time_s));
+    return frame;
+  };
+  return recording;
+}
+
+TEST(RegistrationFit, TellsADelayOfDepthFromAnotherCamera) {
+  const auto fit = fit_registration(delayed(0.02), Workers(2));
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(std::abs(fit->delay_frames), 0.02 * 30, 0.25);
+  EXPECT_FALSE(fit->is_significant()) << fit->moved_px;
 }
 
 TEST(RegistrationFit, LeavesRegisteredDepthAndDoesNotDependOnThreads) {
@@ -97,7 +126,8 @@ TEST(RegistrationFit, LeavesRegisteredDepthAndDoesNotDependOnThreads) {
   const auto one = fit_registration(recording, Workers(1));
   const auto two = fit_registration(recording, Workers(2));
   ASSERT_TRUE(one && two);
-  EXPECT_LT(one->moved_px, 1);
+  EXPECT_LT(one->moved_px, 2);
+  EXPECT_FALSE(one->is_significant());
   EXPECT_EQ(one->moved_px, two->moved_px);
   EXPECT_EQ(one->model.baseline_m, two->model.baseline_m);
 }
