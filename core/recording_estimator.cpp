@@ -99,7 +99,7 @@ Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& 
     report->stages = so_far;
     action = start.judge(*report);
     if (action == acceptance::StartAction::go_on)
-      report->reason = "started again: hardly a frame could be tracked from the first start";
+      report->reason = "started again: too few frames were tracked from the first start";
   }
   const bool is_first = report->status == health::FrameStatus::initialised;
   if (action == acceptance::StartAction::wait) {

@@ -33,14 +33,11 @@ FORBIDDEN = {
     r"(?:stands?|lies|lie|laid) beside": "is next to, is stored in",
     r"two worlds": "odometry frame and map frame",
 }
-SUBJECT = (r"(?:the|an?|this|that|which|it|code|program|filter|tracker|estimator|system|reader|parser|function|class|file|frame|image"
-           r"|camera|model|patch(?:es)?|library|engine|command|option|table|page|test|script)")
-PERSONIFIED = re.compile(
-    rf"\b{SUBJECT} (?:\w+ )?(knows?|wants?|asks?|tells?|told|says?|said|trusts?|looks? (?:at|for)|sees?|thinks?|learns?|refuses?)\b",
-    re.IGNORECASE)
-VERB = re.compile(
-    r"\b(?:is|are|was|were|be|been|has|have|had|does|do|did|can|may|must|will|would|should|needs?|gives?|returns?|\w+ed|\w+s)\b",
-    re.IGNORECASE)
+SUBJECT = (r"(?:it|which|code|program|filter|tracker|estimator|system|reader|parser|function|class|file|frame|image|model|patch(?:es)?"
+           r"|library|engine|command|option|table|page|test|script)")
+ACT = r"(?:knows?|wants?|asks?|tells?|told|says?|said|trusts?|looks? (?:at|for)|thinks?|learns?|refuses?)"
+PERSONIFIED = re.compile(rf"\b{SUBJECT} {ACT}\b", re.IGNORECASE)
+FRAGMENT = re.compile(r"(?:Of|The same(?! \w+ gives)|That of|Those|One that|These two|What|Whether|How|By (?:how|what|which))\b")
 CPP_TEXT = re.compile(r'//[/!]?<?(?P<comment>.*)$|"(?P<string>(?:[^"\\]|\\.)*)"')
 FORBIDDEN_PATTERN = re.compile("|".join(rf"\b(?P<t{i}>{term})(?!\w)" for i, term in enumerate(FORBIDDEN)), re.IGNORECASE)
 
@@ -61,10 +58,9 @@ def texts(path):
 
 
 def candidates(path):
-    """(line number, complaint) that only a reader can judge."""
+    """(line number, complaint) for the judgement of an author."""
     paragraph, first = "", 0
-    lines = [*texts(path), (0, "", False)]
-    for number, text, own in lines:
+    for number, text, own in [*texts(path), (0, "", False)]:
         if match := PERSONIFIED.search(text):
             yield number, f'"{match[0]}": software reads, returns, reports, requires'
         if own and text.strip():
@@ -72,8 +68,8 @@ def candidates(path):
             paragraph += " " + text.strip()
             continue
         for sentence in re.split(r"(?<=[.:;])\s", paragraph.strip()):
-            if sentence.endswith(".") and not VERB.search(sentence):
-                yield first, f'no verb: "{sentence}"'
+            if FRAGMENT.match(sentence):
+                yield first, f'fragment: "{sentence}"'
             if len(sentence.split()) > 35:
                 yield first, f"{len(sentence.split())} words in a sentence"
         paragraph = ""
@@ -87,15 +83,11 @@ def forbidden(path):
 
 
 def files_of(names):
-    for name in names:
-        path = pathlib.Path(name)
-        if path.is_dir():
-            yield from sorted(file for file in path.rglob("*") if file.suffix in SUFFIXES and file.is_file())
-        elif path.is_file():
-            yield path
-        else:
-            print(f"check_words: {name}: there is no such file or folder", file=sys.stderr)
+    for path in map(pathlib.Path, names):
+        if not path.exists():
+            print(f"check_words: {path}: there is no such file or folder", file=sys.stderr)
             sys.exit(2)
+        yield from sorted(f for f in path.rglob("*") if f.suffix in SUFFIXES and f.is_file()) if path.is_dir() else [path]
 
 
 def changed_files():
@@ -105,24 +97,21 @@ def changed_files():
 
 
 def main(arguments):
-    if any(argument in ("-h", "--help") for argument in arguments):
-        print(__doc__.strip())
-        return 0
     check = "--check" in arguments
     names = [argument for argument in arguments if argument != "--check"]
     if any(name.startswith("-") for name in names):
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
+        print(__doc__.strip())
+        return 0 if names[0] in ("-h", "--help") else 2
     if not names:
         names = [str(ROOT / name) for name in CHECKED] if check else changed_files()
-    read = found = 0
-    for path in files_of(names):
-        read += 1
+    found = 0
+    paths = list(files_of(names))
+    for path in paths:
         complaints = [*forbidden(path), *([] if check else candidates(path))]
         for number, complaint in sorted(complaints):
             print(f"{path}:{number}: {complaint}")
         found += len(complaints)
-    print(f"words: {read} files, {found} {'forbidden terms' if check else 'candidates'}")
+    print(f"words: {len(paths)} files, {found} {'forbidden terms' if check else 'candidates'}")
     return int(check and found > 0)
 
 

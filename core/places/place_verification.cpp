@@ -42,7 +42,7 @@ std::optional<RelativePose> pose_by_features(const Appearance& known, const Appe
   const auto pose = pose_from_points(seen, camera);
   if (pose) pair.inliers = static_cast<int>(pose->inliers.size());
   if (!pose || !is_certain_place(seen, *pose, camera, config.relocalisation)) {
-    pair.reason = fmt::format("{} of {} matches agree, which is not certain", pair.inliers, pair.matches);
+    pair.reason = fmt::format("{} of {} matches agree, too few to be certain", pair.inliers, pair.matches);
     return std::nullopt;
   }
   return RelativePose{pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance};
@@ -57,14 +57,14 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
   const auto aligned = aligned_by_depth(known, query, {{T_known_query, Matrix6d::Identity()}, false, reach_m},
                                         camera, config.depth, config.loops);
   if (!aligned) {
-    pair.reason = "their depth cannot be aligned";
+    pair.reason = "the depth images cannot be aligned";
     return std::nullopt;
   }
   const double rotation_sigma_rad = largest_sigma(aligned->covariance.topLeftCorner<3, 3>());
   const double position_sigma_m = largest_sigma(aligned->covariance.bottomRightCorner<3, 3>());
   if (rotation_sigma_rad > radians(loops.max_rotation_sigma_deg) ||
       position_sigma_m > loops.max_position_sigma_m) {
-    pair.reason = fmt::format("depth tells the pose to {:.2f} degrees and {:.1f} cm only",
+    pair.reason = fmt::format("depth determines the pose to {:.2f} degrees and {:.1f} cm only",
                               degrees(rotation_sigma_rad), 100 * position_sigma_m);
     return std::nullopt;
   }
@@ -94,7 +94,7 @@ std::string contradiction_of_depth(const SmallImages& known, const SmallImages& 
     return fmt::format("{:.0f} % of the depth fits (at least {:.0f} %)", 100 * pair.consistent_share,
                        100 * loops.min_consistent_share);
   if (pair.violating_share > loops.max_violating_share)
-    return fmt::format("{:.0f} % of the depth lies in free space (at most {:.0f} %)",
+    return fmt::format("{:.0f} % of the depth is in free space (at most {:.0f} %)",
                        100 * pair.violating_share, 100 * loops.max_violating_share);
   return {};
 }

@@ -65,9 +65,9 @@ Result<health::FrameOutcome> BundlefusionSystem::process(const RgbdFrame& frame)
     outcome.reason = fmt::format("only {} keypoints with depth", keypoints);
   } else if (frames_.back().memberships.empty() ||
              !chunk_->T_first_camera()[frames_.back().memberships.back().place]) {
-    outcome.reason = "it matches no frame of its chunk";
+    outcome.reason = "the frame matches no frame of its chunk";
   } else {
-    outcome.reason = "its chunk begins with a frame whose place is not known";
+    outcome.reason = "its chunk begins with a frame without a pose";
   }
   was_lost_ = !first && !T_world_camera;
   outcome.T_world_camera = T_world_camera_;

@@ -101,7 +101,7 @@ ElasticfusionSystem::Quality ElasticfusionSystem::follow(const surfels::LiveFram
   }
   ++bad_frames_;
   outcome.status = health::FrameStatus::lost;
-  outcome.reason = was_lost ? "it was lost, and fits no place that is known"
+  outcome.reason = was_lost ? "the camera is lost, and the frame matches no stored place"
                             : "its depth fits the model badly, or too little of it";
   if (was_lost) T_world_camera_ = T_world_before;
   return Quality::bad;

@@ -60,7 +60,7 @@ Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& 
   Mesh mesh = precise->cast<float>();
   if (mesh.triangles.empty()) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: no triangles, so there is nothing to see", file.string()),
+                fmt::format("{}: no triangles, so nothing is visible", file.string()),
                 "a point cloud has to be meshed first");
   }
   Eigen::AlignedBox3d bounds;

@@ -136,7 +136,7 @@ TEST(BundlefusionSystem, LosesFramesThatShowNothingAndSaysWhy) {
     EXPECT_EQ(run.outcomes[k + 1].status, FrameStatus::relocalised) << k;
   }
   EXPECT_EQ(run.outcomes[4].reason, "only 0 keypoints with depth");
-  EXPECT_EQ(run.outcomes[8].reason, "it matches no frame of its chunk");
+  EXPECT_EQ(run.outcomes[8].reason, "the frame matches no frame of its chunk");
   EXPECT_EQ(run.outcomes[11].status, FrameStatus::tracked);
   ASSERT_TRUE(run.revised.has_value());
   EXPECT_EQ(run.revised->size(), recording.frames.size() - 3);
