@@ -171,7 +171,7 @@ TEST(Pipeline, BrightnessChangesAreAbsorbed) {
   EXPECT_LT(worst_error_m(darker, reports), 0.01);
 }
 
-TEST(Pipeline, BesideARepeatedColourTheVelocityCarriesOnOnce) {
+TEST(Pipeline, WithARepeatedColourTheVelocityPredictsOnePose) {
   // Two colour images are those of frame 4: depth of frame 5 is not asked, that of frame 6 is. A velocity of
   // five frames is not exact; depth of an instant that is not the frame's would be off by as much again.
   SimulatedRun stalled = shared_run();
@@ -261,7 +261,7 @@ TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
                           [](const FrameReport& report) { return report.status == FrameStatus::tracked; }));
 }
 
-TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
+TEST(Pipeline, DoesNotStartAtAFrameWithoutDepthOrTexture) {
   SimulatedRun run = shared_run();
   std::fill(run.frames[0].depth_m.data.begin(), run.frames[0].depth_m.data.end(), 0.0F);
   std::fill(run.frames[1].grey.data.begin(), run.frames[1].grey.data.end(), std::uint8_t{128});
@@ -272,7 +272,7 @@ TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
   EXPECT_EQ(tracked(reports), kFrames - 3);
 }
 
-TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
+TEST(Pipeline, AnAbsurdInertialSampleLosesFramesButKeepsTheModel) {
   const SimulatedRun run = simulate(24);
   for (const double absurd : {4e9, 1e20, -3e38, 1e308}) {
     for (const auto member : {&ImuSample::angular_velocity_radps, &ImuSample::specific_force_mps2}) {
@@ -302,7 +302,7 @@ TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
   }
 }
 
-TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {
+TEST(Pipeline, MissingImuIsAnErrorWithItsTimes) {
   SimulatedRun truncated = shared_run();
   std::erase_if(truncated.imu,
                 [&](const ImuSample& s) { return s.timestamp_ns > truncated.frames[3].timestamp_ns; });

@@ -60,7 +60,7 @@ TEST(ColorDrift, NoiseAndASingleJoltAreNone) {
   EXPECT_EQ(jolted.noise(config).rotation_rad, 0.0);
 }
 
-TEST(ColorDrift, NothingBeforeTheLag) {
+TEST(ColorDrift, IsZeroBeforeTheLag) {
   const ColorDriftConfig config;
   ColorDrift drift;
   for (int frame = 0; frame < config.lag_frames; ++frame) drift.observe(Vector6d::Constant(1.0), config);

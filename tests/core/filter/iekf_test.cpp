@@ -132,7 +132,7 @@ TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
   EXPECT_EQ(measurement.linearised.back(), 2);
 }
 
-TEST(Iekf, WithoutThePriorInEveryIterationTheMeasurementHasTheLastWord) {
+TEST(Iekf, WithoutThePriorInEveryIterationConvergesToTheMeasurement) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   PositionMeasurement measurement(z, 0.2);  // much less certain than the prediction

@@ -65,7 +65,7 @@ TEST(PoseClones, AnAnchorGainsTheErrorOfItsOwnImage) {
   EXPECT_NEAR(std::sqrt(widest(5, 5)), 0.1, 1e-12);
 }
 
-TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
+TEST(PoseClones, ErrorsTakenOverByTheModelStayErrorsInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
     const GaussianState after = cut_and_fused(before, {.share = share});
@@ -76,7 +76,7 @@ TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   }
 }
 
-TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
+TEST(PoseClones, AnAnchoredFrameGivesNoInformationAgainstItself) {
   const GaussianState state = cut_and_fused(uncertain_at(kTo, 1e-4), {});
   const Eigen::MatrixXd measured = testing::carried(measured_combinations(state.mean), state.covariance);
   EXPECT_LT(measured.topLeftCorner(kPoseSize, kPoseSize).norm(), 1e-15);
@@ -85,7 +85,7 @@ TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
 
 /// Steps of a camera that stands still, seen with noise: against the last frame alone its error grows like a
 /// random walk, against the model it stays; the filter must know both.
-TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
+TEST(PoseClones, CovarianceGrowsWithErrorsOfRelativeMeasurements) {
   constexpr int kRuns = 40, kSteps = 50;
   constexpr double kSigma = 1e-3;
   for (const bool by_model : {false, true}) {
@@ -165,7 +165,7 @@ TEST(PoseClones, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   EXPECT_NEAR(after.covariance(kPosition, kModelPose + 3), 0.9 * 0.1 * 1e-4, 1e-12);
 }
 
-TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
+TEST(PoseClones, EqualDistortionsGiveNoInformationOnTheMotion) {
   // At the first fusion the whole model has the distortion of the frame; later ones average it away.
   GaussianState state = known_at(kTo);
   state.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();

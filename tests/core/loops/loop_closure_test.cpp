@@ -188,7 +188,7 @@ void run_into_the_dark(LoopClosure& loops, const std::vector<RgbdFrame>& frames,
 }
 
 /// Their poses are those of the place that they were found by, wherever it moves, and not of dead reckoning.
-TEST_F(Loops, FramesThatWereFoundAndNotFusedMoveWithTheirPlace) {
+TEST_F(Loops, RelocalisedFramesWithoutFusionMoveWithTheirPlace) {
   const config::Config config = configuration(config::LoopMode::final);
   LoopClosure loops(config, rig_);
   run_into_the_dark(loops, frames(), stamp_ns(kLost - 1));  // by the last place, which has drifted the most
@@ -217,7 +217,7 @@ TEST_F(Loops, FramesThatWereFoundAndNotFusedMoveWithTheirPlace) {
 }
 
 /// Each of those frames is found from the estimate of the one before: dead reckoning has added nothing more.
-TEST_F(Loops, WhatDeadReckoningAddsIsNotCountedAgainInEachFoundFrame) {
+TEST_F(Loops, CountsDeadReckoningOnceForSeveralRelocalisedFrames) {
   const config::Config config = configuration(config::LoopMode::detect);
   LoopClosure loops(config, rig_);
   run_into_the_dark(loops, frames(), stamp_ns(0));
@@ -227,7 +227,7 @@ TEST_F(Loops, WhatDeadReckoningAddsIsNotCountedAgainInEachFoundFrame) {
 }
 
 /// Images and depth do not show that the two frames are of one place.
-TEST_F(Loops, WhatOnlyTheTrackerSaysIsToldApart) {
+TEST_F(Loops, MarksEdgesOfTheTrackerAlone) {
   const config::Config config = configuration(config::LoopMode::detect);
   LoopClosure loops(config, rig_);
   loops.add_fused(frames().front(), estimate_of(0, false), 0);
@@ -240,7 +240,7 @@ TEST_F(Loops, WhatOnlyTheTrackerSaysIsToldApart) {
   testing::expect_contains(candidate_table(loops), ",tracker,accepted,");
 }
 
-TEST_F(Loops, AFalseOneIsDroppedWhereOthersSaySo) {
+TEST_F(Loops, DropsAFalseLoopThatOthersContradict) {
   const config::Config config = configuration(config::LoopMode::final);
   LoopClosure loops(config, rig_);
   run(loops, false, frames());
@@ -348,7 +348,7 @@ TEST_F(Loops, AStateIsCorrectedAsItsPoseIs) {
 }
 
 /// The estimate moves along as a caller's does.
-TEST_F(Loops, OnlineCorrectsTheWorldOfTheEstimate) {
+TEST_F(Loops, OnlineCorrectsTheFrameOfTheEstimate) {
   config::Config config = configuration(config::LoopMode::online);
   config.loops.online_every = 20;
   LoopClosure loops(config, rig_);

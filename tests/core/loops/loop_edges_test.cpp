@@ -68,7 +68,7 @@ TEST(LoopEdges, AreAcceptedWithinDriftAloneAndBeyondItWithSupport) {
       << "32 sigmas: nothing supports that";
 }
 
-TEST(LoopEdges, ATrackerThatFoundItselfIsSupportEnough) {
+TEST(LoopEdges, AcceptsASelfRelocalisation) {
   const std::vector<Place> places = places_along_x();
   for (const LoopEvidence evidence : {LoopEvidence::pair_and_tracker, LoopEvidence::tracker_alone}) {
     LoopCandidate near = verified(places, 0, 36, {0, 1.5, 0});

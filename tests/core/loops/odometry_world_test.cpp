@@ -27,7 +27,7 @@ Relocalisation found_again(const SE3& T_odometry_camera, double predicted_m, dou
 
 double apart(const SE3& a, const SE3& b) { return pose_minus(a, b).norm(); }
 
-TEST(OdometryWorld, GoesOnAsPredictedWhileTheCurrentOneMoves) {
+TEST(OdometryWorld, ContinuesAsPredictedWhileTheCurrentFrameMoves) {
   OdometryWorld world;
   EXPECT_LT(apart(world.T_current_camera(kOdometry, 0), kOdometry), 1e-12);
   world.relocalise(found_again(kOdometry, 0.1, 0.01), kFoundAt, {kOdometry, covariance_by_axis(0.01, 0.01)});
@@ -39,7 +39,7 @@ TEST(OdometryWorld, GoesOnAsPredictedWhileTheCurrentOneMoves) {
   EXPECT_LT(apart(world.T_relocalised_camera(kOdometry, 1), kFoundAt), 1e-12) << "a correction is none";
 }
 
-TEST(OdometryWorld, CountsWhatDeadReckoningAddedOnce) {
+TEST(OdometryWorld, CountsDeadReckoningOnce) {
   OdometryWorld world;
   EXPECT_EQ(world.lost_covariance_at(kOdometry).norm(), 0);
   const OdometryPose last{kOdometry, covariance_by_axis(0.01, 0.02)};
@@ -64,7 +64,7 @@ Matrix6d carried_by(const SE3& from, const SE3& to) {
   return jacobian;
 }
 
-TEST(OdometryWorld, DeadReckoningOverAWayAddsNothingOfTheErrorThatItBeganWith) {
+TEST(OdometryWorld, DeadReckoningAddsNothingOfItsInitialError) {
   OdometryWorld world;
   const SE3 last = kOdometry;
   const SE3 found_at = kOdometry * SE3{so3_exp({0.3, -0.1, 0.2}), {0.5, 1.0, -2.0}};

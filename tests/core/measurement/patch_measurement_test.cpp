@@ -81,7 +81,7 @@ void expect_same(PatchMeasurement& kept, PatchMeasurement& fresh) {
   EXPECT_EQ(kept.tracked_pixels().intensity.size(), fresh.tracked_pixels().intensity.size());
 }
 
-TEST(PatchMeasurement, NothingOfAnEarlierFrameShows) {
+TEST(PatchMeasurement, DoesNotDependOnAnEarlierFrame) {
   const Scene scene;
   const std::vector<Patch> many = scene.cut(60, Deformation::pixelwise);
   const std::vector<Patch> rigid = scene.cut(60, Deformation::rigid_square);

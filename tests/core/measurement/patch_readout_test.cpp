@@ -74,13 +74,13 @@ TEST(PatchReadout, ErrorsDisplaceAPatchByTheMotionUntilItsRow) {
   }
 }
 
-TEST(PatchReadout, ColourOfTwoFramesInOneMotionSaysNothingOfTheTiming) {
+TEST(PatchReadout, ColourOfTwoFramesInOneMotionGivesNoTiming) {
   ReadoutMotion motion = some_motion();
   motion.tells_color_readout = false;
   for (const PoseByReadout& map : color_displacement(motion)) EXPECT_EQ(map.col(0).norm(), 0.0);
 }
 
-TEST(PatchReadout, DepthAgainstAModelOfTheSameMotionSaysNothingOfTheTiming) {
+TEST(PatchReadout, DepthAgainstAModelOfTheSameMotionGivesNoTiming) {
   ReadoutMotion motion = some_motion();
   motion.model = {motion.rate, motion.depth_readout_s * motion.rate, motion.depth_delay_s * motion.rate};
   for (const PoseByReadout& map : depth_displacement(motion))

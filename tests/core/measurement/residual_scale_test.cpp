@@ -71,7 +71,7 @@ TEST(ResidualScale, OutliersCountLittle) {
   EXPECT_LT(after_frames(1.0, 0.05).geometric, 2.3);
 }
 
-TEST(ResidualScale, RejectedPatchesTellNothingAndTheScaleIsBounded) {
+TEST(ResidualScale, IgnoresRejectedPatchesAndBoundsTheScale) {
   const ScaleOptions config;
   std::vector<PatchOutcome> rejected = outcomes(100.0, {}, config, 0.0, 1);
   for (PatchOutcome& outcome : rejected) outcome.accepted = false;

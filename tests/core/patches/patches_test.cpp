@@ -159,7 +159,7 @@ TEST(Patches, CoarsePixelsWithoutMeasuredDepthAreLeftOut) {
   }
 }
 
-TEST(Patches, WithoutAnyMeasuredDepthThePatchTrustsTheModel) {
+TEST(Patches, WithoutMeasuredDepthThePatchUsesTheModel) {
   FusedFrame scene;
   constexpr std::array<int, 2> kMiddle = {220, 60};
   for (int y = 0; y < 130; ++y) {

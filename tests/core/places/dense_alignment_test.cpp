@@ -150,7 +150,7 @@ TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
   EXPECT_NE(other.reason.find("intensities correlate by -"), std::string::npos) << other.reason;
 }
 
-TEST(PlaceVerification, DepthRefinesWhatFeaturesSay) {
+TEST(PlaceVerification, DepthRefinesThePoseOfFeatures) {
   const config::Config config;
   const Appearance known = appearance_at(kCorner, config);
   const Appearance query = appearance_at(kCorner * kTrue, config);

@@ -52,7 +52,7 @@ TEST(PlaceCertainty, AWholeViewIsCertainAtAnyDistance) {
 
 TEST(PlaceCertainty, FewPointsAreNot) { EXPECT_FALSE(is_certain({.right = 20, .wrong = 0})); }
 
-TEST(PlaceCertainty, HowManyPointsAreAskedForIsAnOption) {
+TEST(PlaceCertainty, RequiresTheConfiguredNumberOfPoints) {
   using config::RelocalisationConfig;
   EXPECT_TRUE(is_certain({.right = 20, .wrong = 0}, RelocalisationConfig{.min_inliers = 20}));
   EXPECT_FALSE(is_certain({}, RelocalisationConfig{.min_inliers = 60}));

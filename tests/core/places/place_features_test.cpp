@@ -64,7 +64,7 @@ TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
   EXPECT_TRUE(find_corners(GreyImage(62, 62, 9), kFeatureDefaults).empty());
 }
 
-TEST(PlaceFeatures, AreSpreadInsideAndNoMoreThanAsked) {
+TEST(PlaceFeatures, AreSpreadInsideAndAtMostMaxCount) {
   const GreyImage grey = room_image();
   const auto features = find_place_features(grey, PlaceFeaturesConfig{.max_count = 300});
   EXPECT_LE(features.size(), 300U);
@@ -110,7 +110,7 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
   EXPECT_GT(right, 0.9 * static_cast<double>(matches.size()));
 }
 
-TEST(PlaceFeatures, NothingIsSeenInPlainAndTinyImages) {
+TEST(PlaceFeatures, PlainAndTinyImagesHaveNone) {
   EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), kFeatureDefaults).empty());
   EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), kFeatureDefaults).empty());
   EXPECT_TRUE(find_place_features(GreyImage(), kFeatureDefaults).empty());

@@ -56,7 +56,7 @@ TEST(PoseFromPoints, IsExactForExactPointsInDepthAndOnAPlane) {
   }
 }
 
-TEST(PoseFromPoints, TwoThirdsOfWrongPointsAreFoundOut) {
+TEST(PoseFromPoints, RejectsTwoThirdsOfWrongPoints) {
   Scene scene;
   scene.add_wrong(80);
   scene.add(40, 1, 4);

@@ -51,7 +51,7 @@ TEST(Initialisation, AtRestFindsGravityAndTheGyroscopeBias) {
   EXPECT_LT(sigma(*state, kVelocity), 0.05);
 }
 
-TEST(Initialisation, InMotionTruthLiesWithinTheStatedCovariance) {
+TEST(Initialisation, InMotionTheGroundTruthIsWithinTheCovariance) {
   const testing::HelixMotion motion;
   const auto samples = motion.samples(0, 2, 200);
   const auto state = initialise_with_imu(samples, 1'000'000'000, rig(), InitialisationConfig{});

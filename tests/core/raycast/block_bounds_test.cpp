@@ -93,7 +93,7 @@ TEST(BlockBounds, NoCornerOfABlockLiesBefore) {
   EXPECT_GT(corners, 500);
 }
 
-TEST(BlockBounds, KnowNothingOutsideOfTheImageAndNoBlocksWhereThereAreNone) {
+TEST(BlockBounds, AreZeroOutsideOfTheImageAndInfiniteWithoutBlocks) {
   const AnalyticScene wall{{AnalyticPlane{{0, 0, -1}, -2.0, {10, 120, 250}}}};
   const TsdfVolume volume = fuse(wall, kBoundsCamera, {SE3{}});
   const BlockBounds ahead(volume, kBoundsCamera, SE3{}, DepthConfig{});

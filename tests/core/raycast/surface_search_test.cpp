@@ -126,7 +126,7 @@ TEST(SurfaceSearch, NearAndFarPartsOfAnEdgeAreBothFound) {
   EXPECT_GT(compare(room.found_beside(pixels), room.walked(pixels)).share, 0.9);
 }
 
-TEST(SurfaceSearch, ASurfaceOutOfReachIsNone) {
+TEST(SurfaceSearch, IgnoresASurfaceOutOfReach) {
   const Room room;
   for (const float error_m : {-0.03F, 0.03F}) {
     for (const float reach_m : {0.02F, 0.05F}) {

@@ -125,7 +125,7 @@ TEST(Keyframes, DepthFindsThePoseInTheDark) {
   EXPECT_EQ(found->inliers, 0);
 }
 
-TEST(Keyframes, DepthFindsAPlaceThatNothingPredicted) {
+TEST(Keyframes, DepthFindsAPlaceWithoutAPrediction) {
   const RgbdFrame key = seen_from(kCorner);
   Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
@@ -152,7 +152,7 @@ TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
       << "neither the prediction nor what it looks like is of this place";
 }
 
-TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
+TEST(Keyframes, ReturnTheMatchedKeyframe) {
   Keyframes keyframes(small_camera(), kDefaults);
   const SE3 front;
   const SE3 left{so3_exp({0, radians(-80), 0}), Vector3d::Zero()};
@@ -196,7 +196,7 @@ TEST(Keyframes, FindThePlaceAmongMoreThanAreMatchedWithAllFeatures) {
   EXPECT_GE(found_alone, 5);
 }
 
-TEST(Keyframes, TellAllPlacesThatLookAlike) {
+TEST(Keyframes, ReturnAllAmbiguousCandidates) {
   // Two doors of a corridor: the same picture, three metres apart.
   const RgbdFrame door = seen_from({});
   const SE3 next_door{Quaterniond::Identity(), {3, 0, 0}};
@@ -216,7 +216,7 @@ TEST(Keyframes, TellAllPlacesThatLookAlike) {
   EXPECT_NE(found[0].keyframe, found[1].keyframe);
 }
 
-TEST(Keyframes, FindNothingWhereNoneHasBeen) {
+TEST(Keyframes, FindNothingInAnUnvisitedPlace) {
   Keyframes keyframes = one_keyframe();
   ASSERT_EQ(keyframes.size(), 1U);
   EXPECT_FALSE(keyframes.find(seen_from({}).grey).empty()) << "else the rest says nothing";
@@ -296,7 +296,7 @@ TEST(Keyframes, TheAngleBetweenThemDecidesAsWell) {
   EXPECT_EQ(kept(90), 1U);
 }
 
-TEST(Keyframes, NothingIsFoundByFewerInliersThanAreAskedFor) {
+TEST(Keyframes, RequireTheConfiguredInliers) {
   Config config;
   const RgbdFrame frame = seen_from({});
   const auto found_with = [&](int min_inliers) {
@@ -368,7 +368,7 @@ TEST(Keyframes, ABlurredFrameWithoutFeaturesDoesNotBarASharpOne) {
   EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2, 1.0));
 }
 
-TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
+TEST(Keyframes, RejectFeaturesAtAnEdgeOfDepth) {
   RgbdFrame frame = seen_from({});
   for (int y = 0; y < 240; ++y) {
     for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
@@ -386,7 +386,7 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
   }
 }
 
-TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
+TEST(Keyframes, LandmarksAreComputedAtTheFirstSearch) {
   RgbdFrame frame = seen_from({});
   frame.grey = noise_image();
   ASSERT_GT(find_corners(frame.grey, kDefaults.place_features).size(), 500U);

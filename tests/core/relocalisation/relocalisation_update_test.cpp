@@ -41,7 +41,7 @@ RelocalisedPose place_at(const SE3& T_world_imu, double sigma) {
   return place;
 }
 
-TEST(RelocalisationUpdate, AnExactPlaceIsTakenAndTellsTheVelocity) {
+TEST(RelocalisationUpdate, AnExactPlaceIsAcceptedAndGivesTheVelocity) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
   const SE3 found = pose_plus(kPredicted, off);

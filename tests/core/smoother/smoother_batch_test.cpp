@@ -252,7 +252,7 @@ TEST(BatchEstimate, ATimingIsAsUncertainAsItScattersOverSeconds) {
   EXPECT_GT(normalised, 0.5);
 }
 
-TEST(BatchEstimate, ATimingThatNothingTellsKeepsItsPrior) {
+TEST(BatchEstimate, AnUnobservableTimingKeepsItsPrior) {
   std::mt19937 random(6);
   const MadeUp data = made_up(random, kNoise, 60);
   const BatchInput input = input_of(data, 60, random, 1.0);
@@ -424,7 +424,7 @@ TEST(BatchEstimate, NoiseIsNotTakenForChangesOfSpeed) {
 }
 
 /// Turning about one axis alone does not say where along it the IMU is.
-TEST(BatchEstimate, SaysWhatTheMotionDoesNotDetermine) {
+TEST(BatchEstimate, ReportsWhatTheMotionDoesNotDetermine) {
   MadeUp kind;
   kind.motion.axes = {0, 1, 0};
   std::mt19937 random(6);

@@ -165,7 +165,7 @@ TEST(VisualPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   EXPECT_LT(testing::relative_distance(seen.covariance, expected), 1e-6);
 }
 
-TEST(VisualPose, StaysWhereNothingIsKnown) {
+TEST(VisualPose, KeepsUnobservableDirections) {
   PoseEvidence evidence;
   evidence.quadratic.information.diagonal() << 1e6, 1e6, 1e6, 1e6, 1e6, 0;
   evidence.quadratic.gradient << 0, 0, 0, 0, 0, 1e-3;
@@ -255,7 +255,7 @@ TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
   EXPECT_NE(told.by_timing, pose.by_timing);
 }
 
-TEST(VisualTiming, SaysNothingWithoutMotion) {
+TEST(VisualTiming, HasNoInformationWithoutMotion) {
   PoseEvidence evidence;
   evidence.quadratic.information = 1e6 * Matrix6d::Identity();
   const VisualTiming timing = visual_timing(evidence);

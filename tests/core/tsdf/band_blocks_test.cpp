@@ -83,7 +83,7 @@ TEST(BandBlocks, OfEverySecondOrFourthPixelMissCornersAtMost) {
   }
 }
 
-TEST(BandBlocks, OfSomethingThinAreFoundWithinFourFrames) {
+TEST(BandBlocks, OfAThinObjectAreFoundWithinFourFrames) {
   const TsdfConfig tsdf;
   const DepthConfig depth;
   const double block_m = 8 * tsdf.voxel_m;

@@ -135,7 +135,7 @@ TEST(TsdfVolume, WeighsByTheDepthNoise) {
   EXPECT_GT(weight_at(0.5), 5 * weight_at(4.0));
 }
 
-TEST(TsdfVolume, TrustsTheBackHalfOfTheBandLessAndLess) {
+TEST(TsdfVolume, WeightDecreasesOverTheBackHalfOfTheBand) {
   const TsdfVolume volume = fuse(wall(1.0), kCamera, {kOrigin});
   const auto weight = [&](int z) {
     return static_cast<double>(testing::find_voxel(volume, {0, 0, z})->weight);

@@ -187,7 +187,7 @@ TEST_F(PlainPng, ReadsWhatACameraRecorded) {
   EXPECT_EQ(files, 10);
 }
 
-TEST_F(PlainPng, LeavesEverythingElseAlone) {
+TEST_F(PlainPng, RejectsAllOtherFiles) {
   const std::string head = header(kColor);
   const std::string rows = random_rows(3);
   const std::string pixels = chunk("IDAT", compressed(rows));

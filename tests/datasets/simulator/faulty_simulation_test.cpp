@@ -384,7 +384,7 @@ TEST_F(FaultySimulation, AnUntoldOffsetMovesTheStampsOfTheImuAlone) {
   }
 }
 
-TEST_F(FaultySimulation, NonsenseIsRefusedAndLeavesNothing) {
+TEST_F(FaultySimulation, RejectsInvalidOptionsWithoutAFolder) {
   const auto message = [&](const auto& change) {
     SimulationOptions faulty = options();
     change(faulty);

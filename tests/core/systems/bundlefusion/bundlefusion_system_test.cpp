@@ -124,7 +124,7 @@ TEST(BundlefusionSystem, GivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_EQ(one.model_blocks, four.model_blocks);
 }
 
-TEST(BundlefusionSystem, LosesFramesThatShowNothingAndSaysWhy) {
+TEST(BundlefusionSystem, LosesFramesWithoutKeypointsAndReportsTheReason) {
   testing::SimulatedRun recording = testing::simulate(16, {}, {0.15, 0.3, -0.2});
   std::ranges::fill(recording.frames[4].grey.data, std::uint8_t{90});
   std::ranges::fill(recording.frames[6].depth_m.data, 0.0F);

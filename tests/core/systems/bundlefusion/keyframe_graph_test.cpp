@@ -80,7 +80,7 @@ TEST(BundlefusionKeyframeGraph, PlacesKeyframesAndDropsAFalsePair) {
   }
 }
 
-TEST(BundlefusionKeyframeGraph, TriesAgainWhatMatchedNothing) {
+TEST(BundlefusionKeyframeGraph, RetriesUnmatchedKeyframes) {
   const Workers workers(1);
   const Wall wall;
   KeyframeGraph graph({}, workers);

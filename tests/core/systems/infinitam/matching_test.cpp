@@ -46,7 +46,7 @@ class MatchDepth : public ::testing::Test {
   DepthMatching huber{.max_squared_distance_m2 = 0.8, .huber_m = 0.004, .near_m = 0.2, .far_m = 3.0};
 };
 
-TEST_F(MatchDepth, FindsNothingToDoAtTheTruePose) {
+TEST_F(MatchDepth, HasNoGradientAtTheTruePose) {
   const PoseSums sums = sums_at(SE3{}, squares);
   EXPECT_GT(sums.pixels, 0.7 * static_cast<double>(image.data.size()));
   // Residuals are those of the model: a fraction of a voxel.

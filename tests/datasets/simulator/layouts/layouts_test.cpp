@@ -149,7 +149,7 @@ TEST_P(Layouts, ImuBeginsBeforeTheImagesAndSurroundsThem) {
   }
 }
 
-TEST_P(Layouts, CameraTruthIsTheBodysByTheExtrinsic) {
+TEST_P(Layouts, GroundTruthOfTheCameraFollowsFromTheBody) {
   const Recording recording = make();
   Trajectory body;
   for (const StateRow& row : read_states(path() / "state_groundtruth.csv"))
@@ -164,7 +164,7 @@ TEST_P(Layouts, CameraTruthIsTheBodysByTheExtrinsic) {
   }
 }
 
-TEST_P(Layouts, ImuFromTheTrueStateFollowsTheTruth) {
+TEST_P(Layouts, ImuFromTheTrueStateFollowsTheGroundTruth) {
   const Recording recording = make();
   const Vector3d gravity = read_gravity(path());
   EXPECT_NEAR(gravity.norm(), kGravity_mps2, 1e-9);
@@ -270,7 +270,7 @@ double share_on_surface(const Mesh& scene, const RgbdFrame& frame, const Pinhole
   return static_cast<double>(on_surface) / static_cast<double>(inside);
 }
 
-TEST_P(Layouts, SceneLiesInTheWorldOfTheTruth) {
+TEST_P(Layouts, SceneIsInTheWorldOfTheGroundTruth) {
   const Recording recording = make();
   const auto scene = read_ply(path() / "scene.ply");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -361,7 +361,7 @@ INSTANTIATE_TEST_SUITE_P(All, Layouts,
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
 // The preset of freiburg1, whose cameras the TUM layout has, says where its motion capture is.
-TEST(LayoutRig, TheTruthOfAllIsTheCameras) {
+TEST(LayoutRig, GroundTruthIsThatOfTheCamera) {
   for (const RecordingLayout layout : {RecordingLayout::zr300, RecordingLayout::tum, RecordingLayout::icl}) {
     const auto rig = layout_rig(layout, {640, 480});
     ASSERT_TRUE(rig);

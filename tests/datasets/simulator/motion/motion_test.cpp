@@ -72,7 +72,7 @@ TEST(HandHeldMotion, ReachesItsPeakSpeedsAndNoMore) {
   });
 }
 
-TEST(HandHeldMotion, SaysWhatItReachedWhenItCannotMeetThePeaks) {
+TEST(HandHeldMotion, ReportsTheReachedPeaksOnFailure) {
   MotionOptions options = options_of(MotionPreset::slow, false);
   options.peak_speed_mps = 0.01;
   options.tremor_m = 0.005;  // moves faster than that on its own
@@ -335,7 +335,7 @@ class MotionFile : public testing::InTemporaryFolder {
   }
 };
 
-TEST_F(MotionFile, ThreeKindsOfFilesTellTheSamePath) {
+TEST_F(MotionFile, ThreeKindsOfFilesGiveTheSamePath) {
   std::string tum = "# timestamp tx ty tz qx qy qz qw\n";
   std::string matrices = "# index c2w\n";
   std::string freiburg;
@@ -429,7 +429,7 @@ TEST_F(MotionFile, ErrorsNameFileAndLine) {
   EXPECT_NE(longer.error().message.find("duration_s"), std::string::npos) << longer.error().message;
 }
 
-TEST(MotionFileReal, BothPackingsOfIclNuimTellTheSamePath) {
+TEST(MotionFileReal, BothPackingsOfIclNuimGiveTheSamePath) {
   const char* data = std::getenv("FUSEBENCH_DATA");
   const std::filesystem::path folder =
       std::filesystem::path(data == nullptr ? "" : data) / "icl_nuim_trajectories";

@@ -74,7 +74,7 @@ TEST_F(ScatteredSurfels, ALookMeetsTheNearestOfEachCellRowByRow) {
   }
 }
 
-TEST_F(ScatteredSurfels, NothingOfAMapBeforeIsMet) {
+TEST_F(ScatteredSurfels, DoNotDependOnAnEarlierMap) {
   IndexMap index;
   index.build(surfels, kSmallCamera, {}, {0, 200, true, -1}, Workers{1});
   index.build({}, kSmallCamera, {}, {0, 200, true, -1}, Workers{1});
