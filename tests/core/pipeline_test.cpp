@@ -123,7 +123,7 @@ TEST(Pipeline, StretchesOfStagesAreInOrderAndAddUp) {
     for (std::size_t stage = 0; stage < sums_ms.size(); ++stage)
       EXPECT_DOUBLE_EQ(sums_ms[stage], report.stages.sums_ms()[stage]);
   }
-  // The second frame has told how fast the camera was, and both were processed again.
+  // The velocity was estimated from the second frame, and both frames were processed again.
   const auto predictions = [&](std::size_t frame) {
     const auto spans = reports[frame].stages.spans();
     return std::ranges::count(spans, Stage::predict, &StageSpan::stage);
@@ -172,8 +172,8 @@ TEST(Pipeline, BrightnessChangesAreAbsorbed) {
 }
 
 TEST(Pipeline, WithARepeatedColourTheVelocityPredictsOnePose) {
-  // Two colour images are those of frame 4: depth of frame 5 is not asked, that of frame 6 is. A velocity of
-  // five frames is not exact; depth of an instant that is not the frame's would be off by as much again.
+  // Two colour images repeat that of frame 4: depth of frame 5 is not used, that of frame 6 is. A velocity of
+  // five frames is not exact, and depth of another instant would have a similar error.
   SimulatedRun stalled = shared_run();
   for (const std::size_t k : {5U, 6U}) {
     stalled.frames[k].grey = stalled.frames[4].grey;
@@ -189,7 +189,7 @@ TEST(Pipeline, WithARepeatedColourTheVelocityPredictsOnePose) {
   for (const std::size_t k : {5U, 6U})
     EXPECT_EQ(reports[k].model_blocks, reports[4].model_blocks) << "not fused";
   EXPECT_LT(worst_error_m(stalled, reports), 0.02);
-  // Depth alone does not ask for colour, and an IMU knows the motion.
+  // Depth alone needs no colour, and an IMU measures the motion.
   Config by_depth = config_of("geometric-only");
   by_depth.terms.prior = config::Prior::constant_velocity;
   EXPECT_GT(track(stalled, by_depth)[5].patches_tracked, 0);
@@ -222,7 +222,7 @@ GreyImage darkened(GreyImage grey, double share) {
 TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
   for (const char* const variant : {"full", "no-imu"}) {
     SCOPED_TRACE(variant);
-    // What the recording gives without its first two frames.
+    // Result of the recording without its first two frames.
     SimulatedRun later = shared_run();
     later.frames.erase(later.frames.begin(), later.frames.begin() + 2);
     const auto expected = track(later, config_of(variant));

@@ -71,7 +71,7 @@ class PositionMeasurement final : public PoseMeasurement {
   double information_;
 };
 
-/// The same by stages, which counts what it is asked for.
+/// Measurement in stages that counts its calls.
 class StagedMeasurement final : public PoseMeasurement {
  public:
   explicit StagedMeasurement(PositionMeasurement& one) : one_(one) {}
@@ -113,7 +113,7 @@ TEST(Iekf, AScalarEnergyIsThePapersGainTimesItself) {
   const FilterState expected = plus(prior.mean, StateVector(-gain * energy));
   EXPECT_LT((result.posterior.mean.T_world_imu.translation - expected.T_world_imu.translation).norm(), 1e-9);
   EXPECT_LT((result.posterior.mean.velocity_world_mps - expected.velocity_world_mps).norm(), 1e-9);
-  // Where the energy is least it has no gradient: the posterior is the prior.
+  // The gradient is zero at the minimum of the energy: the posterior is the prior.
   PositionMeasurement at_rest(prior.mean.T_world_imu.translation, kSigma);
   const IekfResult nothing = iekf_update(prior, at_rest, config);
   EXPECT_LT(distance(nothing.posterior.covariance, prior.covariance), 1e-12);
@@ -224,7 +224,7 @@ struct ReadOutUpdate {
       H.block<3, kPoseSize>(0, clone) = -by_rate * carried;
       expected -= by_rate * carried * offset;
     };
-    // Between timing and rates is what is known: it has no error.
+    // The affine term between timing and rates has no error.
     add_rate(kTimingSize + 1, kReferenceRate, prior.mean.reference_rate_offset);
     add_rate(kTimingSize + 1 + kPoseSize, kModelRate, prior.mean.model_rate_offset);
     K = testing::kalman_gain(prior.covariance, H, sigma * sigma * Matrix3d::Identity());
@@ -296,7 +296,7 @@ TEST(Iekf, WithoutInformationKeepsThePriorToTheLastBit) {
 }
 
 TEST(Iekf, AcceptsASingularPrior) {
-  // The first pose is known exactly: its covariance is zero, and no measurement may move it.
+  // The first pose is exact: its covariance is zero, and no measurement may move it.
   GaussianState prior{some_state(), StateMatrix::Zero()};
   prior.covariance.block<3, 3>(kVelocity, kVelocity).setIdentity();
   PositionMeasurement measurement(Vector3d(5, 5, 5), 0.01);
@@ -353,8 +353,8 @@ class PlaneMeasurement final : public PoseMeasurement {
   const PlaneProblem& problem_;
 };
 
-/// The same cost for Ceres, written apart: |d|^2_P for d in the full chart at the prior is its NormalPrior,
-/// and the planes.
+/// The same cost for Ceres, implemented separately: |d|^2_P for d in the full chart at the prior is its
+/// NormalPrior, plus the planes.
 struct PlaneCost {
   SE3 T_world_imu_prior;
   Vector3d point_imu, plane_point, normal;
@@ -376,7 +376,7 @@ struct PlaneCost {
   }
 };
 
-/// A plane tells nothing but the pose, which leads the error state: the other derivatives are zero.
+/// A plane depends on the pose only, the first part of the error state: the other derivatives are zero.
 class PlaneOfTheState final : public ceres::SizedCostFunction<1, kStateSize> {
  public:
   explicit PlaneOfTheState(const PlaneCost& cost) : by_pose_(new PlaneCost(cost)) {}
@@ -424,7 +424,7 @@ TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
   EXPECT_LT(result.map_cost_posterior, result.map_cost_prior);
 }
 
-/// The position by the reference, linear. Keeps the pose that it is first asked for.
+/// The position by the reference, linear. Linearised at the pose of its first call.
 class PositionByReference final : public PoseMeasurement {
  public:
   explicit PositionByReference(Vector3d z) : z_(std::move(z)) {}

@@ -79,7 +79,7 @@ TEST(LoopEdges, AcceptsASelfRelocalisation) {
   }
 }
 
-/// That both are at the same wrong door would make them agree.
+/// Both at the same wrong door would agree with each other.
 TEST(LoopEdges, ATrackerAloneSupportsNoOther) {
   const std::vector<Place> places = places_along_x();
   LoopCandidate found = verified(places, 0, 36, {0, 1.5, 0});

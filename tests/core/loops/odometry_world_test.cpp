@@ -53,7 +53,7 @@ TEST(OdometryWorld, CountsDeadReckoningOnce) {
   EXPECT_LT((world.lost_covariance_at(kOdometry) - lost).norm(), 1e-9);
 }
 
-/// How an error of one pose moves another one that is rigidly connected with it, by small displacements.
+/// Derivative of a rigidly connected pose by the error of another one, by small displacements.
 Matrix6d carried_by(const SE3& from, const SE3& to) {
   constexpr double kStep = 1e-6;
   Matrix6d jacobian;
@@ -75,7 +75,7 @@ TEST(OdometryWorld, DeadReckoningAddsNothingOfItsInitialError) {
   found.predicted_covariance = carried * before * carried.transpose() + added;
   world.relocalise(found, kFoundAt, {last, before});
   EXPECT_LT((world.lost_covariance_at(found_at) - added).norm(), 1e-6);
-  // It is an error of the world of the odometry: seen from elsewhere, its rotation has a lever arm.
+  // The error is in the odometry frame: at another position its rotation has a lever arm.
   const Matrix6d back = carried_by(found_at, last);
   EXPECT_LT((world.lost_covariance_at(last) - back * added * back.transpose()).norm(), 1e-5);
 }

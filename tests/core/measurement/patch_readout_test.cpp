@@ -30,12 +30,12 @@ ReadoutMotion some_motion() {
   return motion;
 }
 
-/// How far a pose moves until a row is read that is `share` of the image below the middle.
+/// Motion of a pose until the read-out of the row at `share` of the image height below the middle.
 Vector6d moved(double share, double readout_s, double delay_s, const Vector6d& rate) {
   return (share * readout_s + delay_s) * rate;
 }
 
-/// By how much errors of the read-out displace a patch's pose, if the images were compensated without them.
+/// Displacement of a patch's pose by errors of the read-out, if the images were compensated without them.
 Vector6d displaced_color(const PatchRows& rows, const filter::ReadoutVector& errors) {
   const ReadoutMotion motion = some_motion();
   const double readout_s = motion.color_readout_s + errors[0];

@@ -25,7 +25,7 @@ struct ScaleOptions {
   GeometricConfig geometric;
 };
 
-/// Patches of residuals that are `sigma` times as large as the scale says, with a share of gross outliers.
+/// Patches with residuals of `sigma` times the scale and a share of gross outliers.
 std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, const ScaleOptions& config,
                                    double outliers, unsigned seed) {
   std::mt19937 random(seed);

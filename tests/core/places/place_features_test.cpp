@@ -45,7 +45,7 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
       << "10 is not below 0.8 x 12";
   EXPECT_TRUE(match_one(with_bits(100), {with_bits(170)}).empty()) << "70 bits are too many";
   EXPECT_TRUE(match_one(with_bits(100), {}).empty());
-  // Both want the only known one; the nearer gets it.
+  // Both match the same reference feature; the nearer one is accepted.
   const std::vector<PlaceFeature> queries{with_bits(120), with_bits(104)};
   const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)}, kFeatureDefaults);
   ASSERT_EQ(matches.size(), 1U);

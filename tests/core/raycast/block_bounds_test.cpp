@@ -62,7 +62,7 @@ TEST(BlockBounds, AreCloseToTheSurface) {
   }
 }
 
-/// Of the few blocks that one pixel allocates: their neighbours do not hide a bound that is missing.
+/// Uses the few blocks of one pixel, whose neighbours cannot hide a missing bound.
 TEST(BlockBounds, NoCornerOfABlockLiesBefore) {
   const PinholeCamera camera = test_camera(640, 480, 90.0);
   const DepthConfig depth;

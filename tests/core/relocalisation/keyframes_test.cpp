@@ -42,7 +42,7 @@ Keyframes one_keyframe(const SE3& T_world_camera = {}) {
   return keyframes;
 }
 
-/// Of what a search found.
+/// Result of a search.
 std::optional<FoundPlace> first_of(const std::vector<FoundPlace>& best_first) {
   if (best_first.empty()) return std::nullopt;
   return best_first.front();
@@ -56,7 +56,7 @@ GreyImage noise_image() {
 }
 
 TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
-  // The world of the poses is not that of the keyframe, so that a mix-up of frames shows.
+  // The world frame differs from that of the keyframe, so that confused frames are detected.
   const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
   const SE3 T_room_key{so3_exp({0.05, -0.1, 0.02}), {0.05, 0, -0.1}};
   const RgbdFrame key = seen_from(T_room_key);
@@ -83,7 +83,7 @@ TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
 }
 
 TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
-  // Turned worlds, so that the axes of the covariance matter.
+  // Rotated worlds, so that the axes of the covariance matter.
   const SE3 T_world_room{so3_exp({0, 0, radians(90)}), {1, 2, 3}};
   const RgbdFrame key = seen_from({});
   Keyframes plain(small_camera(), kDefaults);
@@ -230,7 +230,7 @@ TEST(Keyframes, FindNothingInAnUnvisitedPlace) {
 }
 
 TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
-  // A poster may hang in two rooms: what is seen in one corner of the image tells no pose.
+  // A poster may be in two rooms: matches in one corner of the image determine no pose.
   Keyframes keyframes = one_keyframe();
   const GreyImage whole = seen_from({}).grey;
   GreyImage corner(320, 240, 140);
@@ -265,7 +265,7 @@ TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
   EXPECT_EQ(rolling.size(), 1U);
 }
 
-/// How many of seven frames along a line of 0.96 m are kept.
+/// Number of kept frames of seven along a line of 0.96 m.
 std::size_t kept_along_a_line(const Config& config) {
   Keyframes keyframes(small_camera(), config);
   for (int k = 0; k < 7; ++k) offer(keyframes, {Quaterniond::Identity(), {-0.48 + 0.16 * k, 0, 0}}, k);

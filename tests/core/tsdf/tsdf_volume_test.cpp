@@ -237,7 +237,7 @@ TEST(TsdfVolume, FollowsColourInStepsOfLessThanALevel) {
   const Workers workers(1);
   TsdfVolume volume{TsdfConfig{}};
   RgbdFrame frame = wall_frame(1.0);
-  // Of 64 and more, a frame moves the mean by a sixteenth of a level.
+  // With 64 or more observations, a frame moves the mean by a sixteenth of a level.
   const auto fuse_grey = [&](std::uint8_t level, int frames) {
     std::fill(frame.color.data.begin(), frame.color.data.end(), Rgb{level, level, level});
     for (int i = 0; i < frames; ++i)

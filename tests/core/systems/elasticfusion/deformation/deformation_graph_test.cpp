@@ -41,7 +41,7 @@ TEST(DeformationGraph, SharesAddUpAndFallWithDistance) {
     sum += share;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
-  // The same place in other times belongs to other nodes.
+  // The same position at another time belongs to other nodes.
   for (const std::size_t node : graph->influence_of({{2.51, 0.1, 0.1}, 0}).node) EXPECT_LT(node, 20U);
 }
 

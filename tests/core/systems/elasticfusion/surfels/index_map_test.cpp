@@ -42,7 +42,7 @@ class ScatteredSurfels : public ::testing::Test {
     }
   }
 
-  /// By a look at all cells.
+  /// Reference: exhaustive search over all cells.
   [[nodiscard]] std::vector<std::size_t> expected(int column, int row) const {
     std::vector<std::size_t> numbers;
     for (int y = row - kScale; y < row + kScale; ++y) {
