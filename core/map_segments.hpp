@@ -39,7 +39,7 @@ class MapSegments {
   /// Number of the open segment; 0: the map.
   [[nodiscard]] std::size_t open() const { return open_; }
   /// Converts an estimate of the open segment to the map. Its uncertainty includes the drift in the segment
-  /// and the uncertainty at the begin of the segment.
+  /// and the uncertainty at the start of the segment.
   [[nodiscard]] filter::GaussianState in_map(const filter::GaussianState& in_segment) const;
 
   void add(PosedFrame frame);
@@ -61,7 +61,7 @@ class MapSegments {
  private:
   struct Segment {
     filter::FilterState begin;
-    Matrix6d begin_covariance = Matrix6d::Zero();  ///< of the begin pose in the map, in its tangent
+    Matrix6d begin_covariance = Matrix6d::Zero();  ///< of the start pose in the map, in its tangent
     std::optional<SE3> T_camera_segment_at_join;   ///< empty until joined
     std::int64_t joined_ns = 0;
     SE3 T_map_camera_at_join;

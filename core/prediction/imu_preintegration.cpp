@@ -86,7 +86,7 @@ void integrate_step(PreintegratedImu& sum, const CorrectedSample& from, const Co
   const Matrix3d Jr = so3_right_jacobian(turn);
   const Vector3d force = 0.5 * (R0 * a.specific_force_mps2 + R1 * b.specific_force_mps2);
 
-  // Derivatives of the mean force by a rotation error at the begin and the end of the step.
+  // Derivatives of the mean force by a rotation error at the start and the end of the step.
   const Matrix3d force_by_rotation0 = -0.5 * R0 * hat(a.specific_force_mps2);
   const Matrix3d force_by_rotation1 = -0.5 * R1 * hat(b.specific_force_mps2);
   const Matrix3d force_by_noise = -0.5 * (R0 + R1);

@@ -27,7 +27,7 @@ int taken_of(int stride, std::uint32_t number) {
 
 /// Traversal of eight ray segments along one axis of the lattice, in units of blocks.
 struct AxisSegments {
-  simd::Int8 begin;      ///< block at the begin of the segment
+  simd::Int8 begin;      ///< block at the start of the segment
   simd::Int8 crossings;  ///< number of crossed faces, negative if downwards
   simd::Float8 next;     ///< fraction of the segment at the first crossing
   simd::Float8 delta;    ///< fraction between two crossings

@@ -107,12 +107,12 @@ struct PeakSpeeds {
                                      std::int64_t begin_ns, std::int64_t end_ns);
 
 /// Path time as a function of recording time: rest, smooth start, then a constant rate; or a constant rate
-/// from the begin.
+/// from the start.
 struct PathClock {
-  double still_until_s = 0;  ///< from the begin of the span
+  double still_until_s = 0;  ///< from the start of the span
   double start_s = 0;        ///< from rest to the full rate; 0: no start
   double rate = 1;           ///< path seconds per second
-  double offset_s = 0;       ///< path time at the begin
+  double offset_s = 0;       ///< path time at the start
 
   [[nodiscard]] double path_s(double since_begin_s) const;
 };

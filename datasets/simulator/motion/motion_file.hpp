@@ -38,7 +38,7 @@ struct FilePath {
 
 struct FileMotionOptions {
   double speed = 1;        ///< path seconds per second: 2 is twice as fast
-  double skip_s = 0;       ///< skipped at the begin of the path
+  double skip_s = 0;       ///< skipped at the start of the path
   bool from_rest = false;  ///< hold the first pose, then start smoothly; otherwise start as the path does
   double rest_s = 1.0;     ///< as in MotionOptions
   double start_s = 1.0;

@@ -18,7 +18,7 @@ struct RouteRequest {
 };
 
 /// Two laps along the walls of the room around free_space, looking outwards. Each lap ends within 0.1 m of
-/// the begin of the first.
+/// the start of the first.
 [[nodiscard]] RoutePlan loop_room_route(const RouteRequest& request);
 /// In a scene::make_flat(): along the corridor, around each room, and back along the corridor to the first
 /// pose.
