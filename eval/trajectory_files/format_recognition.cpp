@@ -102,7 +102,7 @@ RecognisedFormat without_names(TrajectoryFormat format, std::string source, cons
   if (format == TrajectoryFormat::kitti) found.matrices = matrices.value_or(MatrixLayout{});
   if (format == TrajectoryFormat::kitti) found.source += found.matrices.described();
   if (format == TrajectoryFormat::tum)
-    found.layout = trajectory::layout_of(head, std::move(found.layout), file, warnings);
+    found.layout = trajectory::layout_of(head, found.layout, file, warnings);
   return found;
 }
 

@@ -117,7 +117,7 @@ cv::Mat small_image(const GreyImage& grey) {
 }
 
 /// By phase correlation.
-Vector2d image_motion_px(const GreyImage& from, const GreyImage& to) {
+Vector2d edge_motion_px(const GreyImage& from, const GreyImage& to) {
   const cv::Mat a = small_image(from), b = small_image(to);
   cv::Mat window;
   cv::createHanningWindow(window, a.size(), CV_32F);
@@ -159,7 +159,7 @@ std::vector<FrameEdges> load_edges(const recording::Recording& recording, std::s
     FrameEdges result = frame_edges(*frame);
     if (k + 1 == frames) return result;
     if (const auto next = recording.load_frame(k + 1))
-      result.motion_px = image_motion_px(frame->grey, next->grey);
+      result.motion_px = edge_motion_px(frame->grey, next->grey);
     return result;
   });
 }
