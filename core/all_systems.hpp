@@ -1,4 +1,4 @@
-// The table of systems: what the option system.method names.
+// The table of systems, one row for each value of the option system.method.
 #pragma once
 
 #include <memory>
@@ -14,20 +14,21 @@ namespace fusebench::core {
 
 struct SystemRow {
   config::SystemMethod method;
-  std::string_view name;      ///< as system.method spells it
-  std::string_view sentence;  ///< what it is, with its source
-  std::string_view options;   ///< the groups of options that it reads, separated by blanks
-  std::string_view threads;   ///< how many threads it uses, and whether that changes its results
-  /// imu: empty for systems without one. What is passed by reference must outlive the system.
+  std::string_view name;      ///< value of system.method
+  std::string_view sentence;  ///< description with its source
+  std::string_view options;   ///< groups of options that the system reads, separated by blanks
+  std::string_view threads;   ///< number of threads, and whether it affects the results
+  /// imu: empty for systems without an IMU. The referenced arguments must outlive the system.
   std::unique_ptr<systems::System> (*make)(const config::Config& config, const SensorRig& rig,
                                            std::span<const ImuSample> imu, const Workers& workers,
                                            Replay replay);
 };
 
-/// All systems, in the order in which they are listed.
+/// All systems in listing order.
 [[nodiscard]] std::span<const SystemRow> all_systems();
 
-/// The system of a configuration. replay: as of RecordingEstimator; bundlefusion makes its model by it.
+/// Creates the system of a configuration. replay: as in RecordingEstimator; bundlefusion builds its model
+/// with it.
 [[nodiscard]] std::unique_ptr<systems::System> make_system(const config::Config& config, const SensorRig& rig,
                                                            std::span<const ImuSample> imu,
                                                            const Workers& workers, Replay replay = {});

@@ -1,5 +1,5 @@
-// What is derived from a frame before it is used: one instant for all rows, an image pyramid, depth gates.
-// Not in the paper.
+// Prepares a frame for its update: compensates it to one instant for all rows, builds the image pyramid,
+// applies the depth gates. Not in the paper.
 #pragma once
 
 #include <vector>
@@ -15,10 +15,10 @@
 
 namespace fusebench::core {
 
-/// The current frame, prepared. Its memory serves one frame after the other.
+/// The prepared current frame. Its buffers are reused for each frame.
 class FramePreparation {
  public:
-  /// All references must outlive it.
+  /// The references must outlive it.
   FramePreparation(const config::TermsConfig& terms, const config::PatchConfig& patches,
                    const config::DepthConfig& depth, const config::AlignmentConfig& alignment,
                    const SensorRig& rig, const Workers& workers)
@@ -29,36 +29,37 @@ class FramePreparation {
         rig_(rig),
         workers_(workers) {}
 
-  /// Grey and depth, compensated for the motion (if rows or depth are of other instants than the frame, as
-  /// far as the state knows, and the variant undoes that) and gated. Colour has to wait for prepare_color().
-  /// The frame must outlive what is prepared from it.
+  /// Compensates grey and depth for the motion, if rows or depth have other instants than the frame and the
+  /// variant compensates, then applies the depth gates. Colour is compensated by prepare_color(). The frame
+  /// must outlive the preparation.
   void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
 
-  /// The same frame for another motion, if that differs from the one that it was prepared for by more than
-  /// the tolerance. True if it was prepared again.
+  /// Prepares the same frame again if `motion` differs from the compensated motion by more than the
+  /// tolerance. True if it was prepared again.
   bool prepare_again(const filter::FilterState& motion, const preprocessing::VelocityTolerance& tolerance,
                      health::StageTimes& stages);
 
-  /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
-  /// fused need it.
+  /// Compensates the colour of the last prepared frame. Only frames that are fused need it.
   void prepare_color(health::StageTimes& stages);
 
-  /// The motion that the read-out was undone for; nothing if none was.
-  [[nodiscard]] const filter::FilterState* undone_motion() const { return compensated_ ? &motion_ : nullptr; }
-  /// What was undone, against the motion that the frame turned out to have.
-  [[nodiscard]] filter::UndoneReadout undone_readout(const filter::FilterState& motion) const {
-    const filter::FilterState& undone = compensated_ ? motion_ : motion;
-    const Vector6d rate = filter::pose_rate(undone);
-    return {filter::pose_rate(motion) - rate, rate, undone.sensors.timing_s()};
+  /// Motion for which the frame was compensated; null if it was not.
+  [[nodiscard]] const filter::FilterState* compensated_motion() const {
+    return compensated_ ? &motion_ : nullptr;
+  }
+  /// Compensation of the frame, relative to its estimated motion.
+  [[nodiscard]] filter::CompensatedReadout compensated_readout(const filter::FilterState& motion) const {
+    const filter::FilterState& compensated = compensated_ ? motion_ : motion;
+    const Vector6d rate = filter::pose_rate(compensated);
+    return {filter::pose_rate(motion) - rate, rate, compensated.sensors.timing_s()};
   }
   [[nodiscard]] const preprocessing::FrameTiming& timing() const { return timing_; }
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
-  /// The levels that patches have.
+  /// The pyramid levels of the patches.
   [[nodiscard]] std::span<const GreyImage> pyramid() const;
-  /// And the coarser ones that whole images are aligned by.
+  /// All pyramid levels, with the coarser ones for the alignment of whole images.
   [[nodiscard]] std::span<const GreyImage> whole_pyramid() const { return pyramid_; }
-  /// Depth that patches are cut by: gated or, if the configuration says so, not.
+  /// Depth for cutting patches, gated if the configuration requires it.
   [[nodiscard]] const DepthImage& patch_depth_m() const;
   [[nodiscard]] measurement::ObservedFrame observed(const Novelty& novelty) const {
     return {pyramid(), frame_.depth_m, novelty.color, novelty.depth};
@@ -72,11 +73,11 @@ class FramePreparation {
   const SensorRig& rig_;
   const Workers& workers_;
   std::vector<GreyImage> pyramid_;
-  RgbdFrame frame_;             ///< compensated ones have the colour of an earlier one until prepare_color()
-  DepthImage ungated_depth_m_;  ///< before the gates
-  const RgbdFrame* source_ = nullptr;  ///< as it was read
+  RgbdFrame frame_;  ///< a compensated frame has the colour of an earlier frame until prepare_color()
+  DepthImage ungated_depth_m_;         ///< before the depth gates
+  const RgbdFrame* source_ = nullptr;  ///< the frame as read
   bool compensated_ = false;
-  preprocessing::FrameTiming timing_;  ///< these three: that it was compensated for, if at all
+  preprocessing::FrameTiming timing_;  ///< timing_, motion_ and compensated_ describe the compensation
   filter::FilterState motion_;
   preprocessing::CameraVelocity velocity_;
 };

@@ -7,7 +7,7 @@
 namespace fusebench::core {
 
 namespace {
-/// Noise in what the residuals are regressed on pulls the result towards nothing: at this ratio by 4 %.
+/// Noise in the regressor biases the result towards zero: by 4 % at this signal-to-noise ratio.
 constexpr double kLeastSignal = 5;
 }  // namespace
 
@@ -24,21 +24,22 @@ double agreement(std::span<const measurement::PatchOutcome> outcomes) {
 
 measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, const FramePreparation& frame) {
   measurement::ReadoutMotion motion;
-  const filter::FilterState& undone = frame.undone_motion() ? *frame.undone_motion() : prior;
-  if (frame.undone_motion()) {
+  const filter::FilterState& compensated = frame.compensated_motion() ? *frame.compensated_motion() : prior;
+  if (frame.compensated_motion()) {
     motion.color_readout_s = frame.timing().color_readout_s;
     motion.depth_readout_s = frame.timing().depth_readout_s;
     motion.depth_delay_s = frame.timing().depth_delay_s;
   }
-  const Vector6d rate_change = filter::pose_rate(undone) - filter::pose_rate(prior);
-  motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), -1, rate_change, rate_change;
-  motion.rate = filter::pose_rate(undone);
+  const Vector6d rate_change = filter::pose_rate(compensated) - filter::pose_rate(prior);
+  motion.compensated << compensated.sensors.timing_s() - prior.sensors.timing_s(), -1, rate_change,
+      rate_change;
+  motion.rate = filter::pose_rate(compensated);
   const Matrix6d carried = filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
   motion.reference_rate = carried * prior.reference_rate;
-  motion.supposed_s = undone.sensors.timing_s();
+  motion.supposed_s = compensated.sensors.timing_s();
   motion.reference_color_readout_s = prior.reference_color_readout_s;
   motion.model = filter::transported(carried, prior.model_readout);
-  // That of the IMU has its noise twice; its bias drops out.
+  // The difference has twice the variance of the IMU noise; the bias cancels.
   const double change_radps = (motion.rate - motion.reference_rate).head<3>().norm();
   const double noise_radps = std::sqrt(2.0) * prior.angular_velocity_noise_radps;
   motion.tells_color_readout = change_radps > kLeastSignal * noise_radps;
@@ -55,7 +56,7 @@ filter::IekfResult FrameUpdate::run_from(const filter::MeasuredVector& start,
                                          const FramePreparation& frame, const Novelty& novelty) {
   measurement::ObservedFrame observed = frame.observed(novelty);
   if (config_.terms.motion_compensation) observed.motion = readout_motion(prior.mean, frame);
-  // Without an IMU the motion during a read-out is known from the images alone, which the read-out distorts.
+  // Without an IMU the read-out motion is estimated from the images alone, which the read-out distorts.
   const bool constants_can_be_told = config_.terms.prior == config::Prior::imu &&
                                      last.turned_rad >= config_.self_calibration.turn_before_rad;
   const auto constants =
@@ -67,7 +68,7 @@ filter::IekfResult FrameUpdate::run_from(const filter::MeasuredVector& start,
 filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior, const Tracking& last,
                                     const FramePreparation& frame, const Novelty& novelty, bool thorough) {
   const alignment::ReferencePoints& points = last.reference.points;
-  // Where the camera would be if it stood still; the keyframe of a relocalised frame.
+  // Pose of a camera that stands still; for a relocalised frame, the pose of the matched keyframe.
   const SE3& last_pose =
       last.lost_frames == 0 ? last.estimate->mean.T_world_imu : prior.mean.T_world_imu_reference;
   const auto update_from = [&](const filter::MeasuredVector& start) {
@@ -77,7 +78,7 @@ filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior, const Tr
     return update_from(filter::MeasuredVector::Zero());
   const alignment::FoundStart found = search_.find(prior, last_pose, points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
-  // With a prediction that is near enough there is no other basin.
+  // If the prediction is close enough there is no second basin of convergence.
   const double first_agreement = agreement(measurement_.outcomes());
   if (thorough || found.coarsest_level < 0 || first_agreement >= config_.health.sure_correlation)
     return first;

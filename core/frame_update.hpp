@@ -1,5 +1,5 @@
-// The update of a frame: where it starts, and which of two basins it ends in. Around Eqs. 15-23, which are
-// those of filter::iekf_update().
+// The update of a frame: selects its start and the better of two basins of convergence. Calls
+// filter::iekf_update() (Eqs. 15-23).
 #pragma once
 
 #include "core/alignment/start_search.hpp"
@@ -15,26 +15,27 @@ namespace fusebench::core {
 
 class FrameUpdate {
  public:
-  /// All references must outlive it.
+  /// The references must outlive it.
   FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers);
 
-  /// Updates the prior by the patches of the last frames in the prepared frame. Where the prediction is
-  /// uncertain and the patches are hardly recognised, the update starts once more from the coarsest level,
-  /// and the better of the two counts; thorough: it starts there at once.
+  /// Updates the prior with the patches of the last frame, observed in the prepared frame. If the prediction
+  /// is uncertain and the patches correlate badly, a second update starts from the coarsest level, and the
+  /// better result is returned. thorough: starts from the coarsest level at once.
   [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior, const Tracking& last,
                                        const FramePreparation& frame, const Novelty& novelty, bool thorough);
 
-  /// From where another update of the same frame ended, which was prepared anew for the motion that it found.
+  /// Updates again from the result of another update of the same frame, after the frame was prepared for the
+  /// estimated motion.
   [[nodiscard]] filter::IekfResult run_from(const filter::MeasuredVector& start,
                                             const filter::GaussianState& prior, const Tracking& last,
                                             const FramePreparation& frame, const Novelty& novelty);
 
-  /// After an update: each patch goes to where a translation of its own puts it, from the prediction on.
+  /// Moves each patch by its own translation, from its predicted position. Call it after an update.
   void move_patches_alone(const filter::GaussianState& prior) {
     measurement_.move_patches_alone(prior.mean.T_world_imu);
   }
 
-  /// Of the update that run() or run_from() returned last.
+  /// Measurement of the last run() or run_from().
   [[nodiscard]] const measurement::PatchMeasurement& measurement() const { return measurement_; }
 
  private:
@@ -43,12 +44,12 @@ class FrameUpdate {
   measurement::PatchMeasurement measurement_;
 };
 
-/// What the frame was prepared for, and the motion of the reference, around the prior.
+/// Compensated motion of the frame and motion of the reference, relative to the prior.
 [[nodiscard]] measurement::ReadoutMotion readout_motion(const filter::FilterState& prior,
                                                         const FramePreparation& frame);
 
-/// How well the patches in view are recognised after an update: their mean correlation with the reference, of
-/// which one that is not tracked counts as zero. Zero without any.
+/// Mean correlation of the patches in view with the reference after an update; an untracked patch counts as
+/// zero. Zero without patches.
 [[nodiscard]] double agreement(std::span<const measurement::PatchOutcome> outcomes);
 
 }  // namespace fusebench::core

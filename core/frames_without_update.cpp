@@ -14,7 +14,7 @@ namespace fusebench::core {
 void repeat_last(const Tracking& now, const SensorRig& rig, health::FrameReport& report) {
   report.status = health::FrameStatus::tracked;
   report.health = health::FrameHealth::repeated;
-  report.reason = "colour and depth are those of the frame before";
+  report.reason = "colour and depth repeat the previous frame";
   health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
 }
@@ -32,7 +32,7 @@ void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_
   now.timestamp_ns = now.located_ns = now_ns;
   report.status = health::FrameStatus::tracked;
   report.health = health::FrameHealth::repeated;
-  report.reason = "colour is that of the frame before: the pose is predicted";
+  report.reason = "colour repeats the previous frame: the pose is predicted";
   report.certainty = health::certainty_of(predicted);
   health::describe_state(predicted, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();

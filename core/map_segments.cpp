@@ -27,8 +27,8 @@ void MapSegments::join(std::int64_t timestamp_ns, const SE3& T_map_camera, const
   open_ = 0;
 }
 
-/// An error of the pose that the segment begins at moves all of it: pose, velocity and gravity in the map
-/// follow.
+/// An error of the pose at the start of the segment moves the whole segment, so it applies to pose, velocity
+/// and gravity in the map.
 filter::GaussianState MapSegments::in_map(const filter::GaussianState& in_segment) const {
   check(open_ > 0, "a segment is open");
   const Segment& segment = segments_[open_ - 1];

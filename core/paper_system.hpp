@@ -1,4 +1,4 @@
-// The paper's filter and its ablations as one of the systems.
+// The paper's filter and its ablations as a system.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace fusebench::core {
 
 class PaperSystem final : public systems::System {
  public:
-  /// As RecordingEstimator.
+  /// Parameters as RecordingEstimator.
   PaperSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
               const Workers& workers, Replay replay)
       : estimator_(config, rig, imu, workers, std::move(replay)) {}

@@ -43,8 +43,8 @@ std::unique_ptr<Tracking> Pipeline::exchange(std::unique_ptr<Tracking> tracking)
   return std::exchange(tracking_, std::move(tracking));
 }
 
-/// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
-/// (fusion and new patches).
+/// Processes one frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated
+/// update), 2.3 (fusion and new patches).
 Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
   Tracking& now = *tracking_;
   health::FrameReport report = health::report_of(frame);
@@ -94,7 +94,7 @@ Result<health::FrameReport> Pipeline::relocalise_again(const RgbdFrame& frame,
   return finish_frame(std::move(report), frame.capture_ns());
 }
 
-/// What follows the update.
+/// Fusion, patches and bookkeeping after the update.
 Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report, std::int64_t capture_ns) {
   Tracking& now = *tracking_;
   now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
@@ -102,7 +102,7 @@ Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report, s
   if (report.status != health::FrameStatus::lost) now.located_ns = capture_ns;
   ++now.frames;
 
-  // Colour and depth of different instants belong neither into the model nor together into a patch.
+  // Colour and depth of different instants must be neither fused nor combined in a patch.
   if (now.fusion_gate.admits(report, novelty_.complete(), config_.health)) {
     const filter::FilterState& state = now.estimate->mean;
     preparation_.prepare_again(state, velocity_tolerance_to_fuse(config_.compensation), report.stages);
@@ -119,7 +119,7 @@ Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report, s
   return report;
 }
 
-/// Sec. 2.2.1: IMU samples carry the state to the frame; without an IMU, constant velocity does.
+/// Sec. 2.2.1: propagates the state to the frame by IMU samples, or by constant velocity without an IMU.
 Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns, health::StageTimes& stages) const {
   const health::StageClock clock(stages, health::Stage::predict);
   const Beginning& beginning = tracking_->beginning;
@@ -135,7 +135,8 @@ Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns, health::Sta
                                         config_.self_calibration);
 }
 
-/// The state of a frame without an update. The prior of an update, which is wide on purpose, is `predicted`.
+/// State of a frame without an update. Differs from `predicted`, the prior of an update, which has an
+/// intentionally wide covariance.
 filter::GaussianState Pipeline::dead_reckoned(const filter::GaussianState& predicted,
                                               std::int64_t now_ns) const {
   const bool is_first = !tracking_->estimate;
@@ -156,10 +157,9 @@ health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted, hea
   return health::FrameStatus::relocalised;
 }
 
-/// Secs. 2.1 and 2.2.2: the patches are deformed into the frame (Eqs. 1-2, shrink and extend effects) by each
-/// iterate of the update (Eq. 18), which minimises what is left between them and the images (Eqs. 3-5), in
-/// PatchMeasurement::linearise(). The images are those of the frame's instant by the motion that the update
-/// finds.
+/// Secs. 2.1 and 2.2.2: each iterate of the update (Eq. 18) deforms the patches into the frame (Eqs. 1-2,
+/// shrink and extend effects) and reduces the residuals (Eqs. 3-5), in PatchMeasurement::linearise(). The
+/// images are compensated for the motion that the update estimates.
 filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool thorough,
                                     health::StageTimes& stages) {
   const auto timed = [&](const auto& run) {
@@ -180,7 +180,7 @@ filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool tho
   return result;
 }
 
-/// False if the result of the update is rejected.
+/// Runs the update. False if it is rejected.
 bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
   Tracking& now = *tracking_;
   const filter::IekfResult update = this->update(prior, thorough, report.stages);  // Eqs. 1-5, 15-23
@@ -200,7 +200,7 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
                                        config_.health, config_.iekf, config_.patches.size_px);
   report.reason = acceptance::rejection_reason(report, config_.terms, config_.iekf, config_.health);
   if (!report.reason.empty()) {
-    // A light or a blur that the learnt noise does not allow must not lock every frame out.
+    // Resets the learned noise scale; otherwise one lighting change or blur would reject every later frame.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
                           std::max(1.0, now.residual_scale.geometric)};
     return false;
@@ -234,8 +234,8 @@ bool Pipeline::track_again(const filter::GaussianState& prior, bool thorough, he
   return tracked;
 }
 
-/// Looks for the frame among the keyframes, and tracks it from there with their patches; where these cannot
-/// be seen, a pose that depth has verified is taken as it is.
+/// Searches the frame among the keyframes and tracks it with the patches of a match. If these are not
+/// visible, accepts a pose that depth has verified.
 bool Pipeline::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
   if (!config_.terms.relocalisation || !novelty_.color) return false;
   Tracking& now = *tracking_;
@@ -251,7 +251,7 @@ bool Pipeline::relocalise(const filter::GaussianState& prediction, health::Frame
   if (!found) return false;
   std::swap(now.reference, found->reference);
   if (!dark && track_again(found->prior, false, report)) {
-    report.pixels = {};  // the intensity error is one against the frame before
+    report.pixels = {};  // the intensity error is defined against the previous frame
     return true;
   }
   if (found->by_depth) {
@@ -264,8 +264,8 @@ bool Pipeline::relocalise(const filter::GaussianState& prediction, health::Frame
   return false;
 }
 
-/// Sec. 2.3: the depth image goes into the model at the updated pose. Where loops are closed online, without
-/// what an old surface contradicts: the loop will tell.
+/// Sec. 2.3: fuses the depth image into the model at the updated pose. With online loop closure, excludes
+/// depth that contradicts an old surface (deferred fusion).
 Result<void> Pipeline::fuse(health::FrameReport& report) {
   preparation_.prepare_color(report.stages);
   const health::StageClock clock(report.stages, health::Stage::fuse);
@@ -293,27 +293,27 @@ Result<void> Pipeline::fuse_again(const RgbdFrame& frame, const filter::FilterSt
 
 void Pipeline::resume(const filter::GaussianState& estimate) {
   Tracking& now = *tracking_;
-  now.estimate = filter::cloned_as_reference(estimate, preparation_.undone_readout(estimate.mean));
+  now.estimate = filter::cloned_as_reference(estimate, preparation_.compensated_readout(estimate.mean));
   now.reference.timestamp_ns = now.timestamp_ns;
   cut_patches();
 }
 
-/// Sec. 2.3: surviving patches are cut again as squares, new corners join them, depth comes from the model.
-/// Until then patches stay with the frame that they were cut from.
+/// Sec. 2.3: cuts surviving patches again as squares, adds new corners, takes depth from the model. Otherwise
+/// the patches keep their reference frame.
 void Pipeline::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking_;
-  const filter::UndoneReadout undone = preparation_.undone_readout(now.estimate->mean);
+  const filter::CompensatedReadout compensated = preparation_.compensated_readout(now.estimate->mean);
   const bool is_first = now.reference.patches.empty();
   const bool anew =
       is_first || acceptance::needs_new_anchor(deformed_update_.measurement().outcomes(), config_.patches);
   if (anew) cut_patches();
   const double share =
       patches::fused_share(now.model, now.reference.patches, reference_frame(), config_.depth);
-  now.estimate = filter::fused_into_model(*now.estimate, {share, config_.motion.drift_factor}, undone);
+  now.estimate = filter::fused_into_model(*now.estimate, {share, config_.motion.drift_factor}, compensated);
   if (anew) {
     now.reference.timestamp_ns = now.timestamp_ns;
-    now.estimate = filter::cloned_as_reference(*now.estimate, undone);
+    now.estimate = filter::cloned_as_reference(*now.estimate, compensated);
     if (config_.patches.refresh == config::Refresh::anchor && !is_first)
       now.estimate = filter::with_anchor_noise(*std::move(now.estimate),
                                                deformed_update_.measurement().color_information());

@@ -1,4 +1,4 @@
-// The system of the paper, frame by frame: predict, deform and track patches, fuse, refresh patches.
+// The pipeline of the paper for each frame: predict, deform and track patches, fuse, refresh patches.
 #pragma once
 
 #include <cstdint>
@@ -19,41 +19,38 @@
 
 namespace fusebench::core {
 
-/// The steps of a frame. What they change between frames is the Tracking; everything else is memory that is
-/// used again.
+/// The steps of a frame. The state between frames is in Tracking; the other members are reused buffers.
 class Pipeline {
  public:
-  /// imu: all samples of the recording, sorted by time (empty if terms.prior does not need them). All
-  /// references must outlive the pipeline. Begins with `tracking`.
+  /// imu: all samples of the recording, sorted by time (empty if terms.prior does not need them). The
+  /// references must outlive the pipeline. Starts with `tracking`.
   Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
            const Workers& workers, std::unique_ptr<Tracking> tracking);
 
-  /// Goes on with another tracking; returns the one before.
+  /// Replaces the tracking and returns the previous one.
   std::unique_ptr<Tracking> exchange(std::unique_ptr<Tracking> tracking);
   [[nodiscard]] Tracking& tracking() { return *tracking_; }
   [[nodiscard]] const Tracking& tracking() const { return *tracking_; }
 
-  /// Processes the next frame (time must increase). A lost frame is a report, not an error; errors are IMU
-  /// samples that do not cover the frame (data_corrupt) and a full model (run_failed).
+  /// Processes the next frame (time must increase). A lost frame is a report, not an error. Errors: IMU
+  /// samples that do not cover the frame (data_corrupt), a full model (run_failed).
   [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame);
 
-  /// The frame that was processed last is looked for among the keyframes of the tracking, which another one
-  /// was exchanged for since, from this prior. Its report is that of a relocalised frame, or of a lost one.
-  /// `before`: the report of process(). Errors: those of process().
+  /// Searches the last processed frame among the keyframes of the tracking, after exchange(), from this
+  /// prior. Returns the report of a relocalised or a lost frame. `before`: report of process(). Errors: those
+  /// of process().
   [[nodiscard]] Result<health::FrameReport> relocalise_again(const RgbdFrame& frame,
                                                              const filter::GaussianState& prior,
                                                              const health::FrameReport& before);
-  /// Of the last frame: what was not in the frame before.
+  /// New images of the last frame.
   [[nodiscard]] const Novelty& novelty() const { return novelty_; }
   [[nodiscard]] SE3 T_world_camera() const {
     return tracking_->estimate->mean.T_world_imu * rig_.T_imu_camera;
   }
 
-  /// Sec. 2.3 once more, at a revised state and for the motion that the frame turned out to have. Errors: a
-  /// full model.
+  /// Repeats Sec. 2.3 at a revised state and for the estimated motion of the frame. Errors: a full model.
   [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame, const filter::FilterState& state);
-  /// After the last of these frames: tracking goes on from this estimate, with patches that are cut from the
-  /// new model.
+  /// After the last fuse_again(): continues tracking from this estimate, with patches cut from the new model.
   void resume(const filter::GaussianState& estimate);
 
  private:
@@ -73,11 +70,11 @@ class Pipeline {
   [[nodiscard]] Result<void> integrate(const RgbdFrame& frame);
   void refresh(health::StageTimes& stages);
   void cut_patches();
-  /// What patches are cut from.
+  /// The frame for cutting patches.
   [[nodiscard]] patches::ReferenceFrame reference_frame() const {
     return {preparation_.pyramid(), preparation_.patch_depth_m(), rig_.camera, T_world_camera()};
   }
-  /// Since the frame before.
+  /// Time since the previous frame.
   [[nodiscard]] double duration_s(std::int64_t now_ns) const {
     return seconds_between(tracking_->timestamp_ns, now_ns);
   }
@@ -88,9 +85,9 @@ class Pipeline {
   const Workers& workers_;
   Novelty novelty_;               ///< of the current frame
   FramePreparation preparation_;  ///< of the current frame
-  FrameUpdate deformed_update_;   ///< by the patches, deformed into the current frame
+  FrameUpdate deformed_update_;   ///< update with the patches deformed into the current frame
   patches::PatchWorkspace patch_workspace_;
-  std::unique_ptr<Tracking> tracking_;  ///< always there
+  std::unique_ptr<Tracking> tracking_;  ///< never null
 };
 
 }  // namespace fusebench::core

@@ -19,13 +19,13 @@ namespace fusebench::core {
 
 namespace {
 
-/// Loops are of the map alone.
+/// Loops are closed in the map only.
 config::Config config_of_segment(config::Config config) {
   config.loops.mode = config::LoopMode::off;
   return config;
 }
 
-/// Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
+/// The constant-velocity model applies to the camera: without an IMU, T_imu_camera must have no effect.
 SensorRig rig_for(const config::TermsConfig& terms, SensorRig rig) {
   if (terms.prior == config::Prior::constant_velocity) rig.T_imu_camera = SE3{};
   return rig;
@@ -64,11 +64,11 @@ struct RecordingEstimator::State {
   SensorRig rig;
   Pipeline pipeline;
   acceptance::RecordingStart start{config.initialisation};
-  std::optional<RgbdFrame> first_frame;  ///< until the second one was processed
+  std::optional<RgbdFrame> first_frame;  ///< until the second frame is processed
   MapSegments segments;
   Replay replay;
-  std::unique_ptr<Tracking> map;  ///< while a segment is open
-  bool map_is_corrected = false;  ///< by a loop, at least once
+  std::unique_ptr<Tracking> map;  ///< set while a segment is open
+  bool map_is_corrected = false;  ///< by at least one loop
 };
 
 void RecordingEstimator::State::restart(Beginning beginning) {
@@ -77,7 +77,7 @@ void RecordingEstimator::State::restart(Beginning beginning) {
   segments = {};
 }
 
-/// From the first frame on, as acceptance::RecordingStart decides.
+/// Processes frames until the first one is selected by acceptance::RecordingStart, and all later ones.
 Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& frame) {
   Result<health::FrameReport> report = process_located(frame);
   if (!report) return report;
@@ -99,7 +99,7 @@ Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& 
     report->stages = so_far;
     action = start.judge(*report);
     if (action == acceptance::StartAction::go_on)
-      report->reason = "started again: hardly a frame could be tracked from the first start";
+      report->reason = "started again: too few frames were tracked from the first start";
   }
   const bool is_first = report->status == health::FrameStatus::initialised;
   if (action == acceptance::StartAction::wait) {
@@ -112,7 +112,7 @@ Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& 
   return report;
 }
 
-/// The first two frames, with the velocity that they have told.
+/// Processes the first two frames with the velocity estimated from them.
 Result<health::FrameReport> RecordingEstimator::State::process_second_again(const RgbdFrame& second) {
   restart({.motion = pipeline.tracking().estimate->mean});
   const Result<health::FrameReport> first = process_located(*first_frame);
@@ -125,7 +125,7 @@ Result<health::FrameReport> RecordingEstimator::State::process_second_again(cons
   return report;
 }
 
-/// In the map, or in a segment.
+/// Processes a frame in the map or in a segment.
 Result<health::FrameReport> RecordingEstimator::State::process_located(const RgbdFrame& frame) {
   Result<health::FrameReport> report = pipeline.process(frame);
   if (report && segments.open() > 0) report = look_for_map(frame, *std::move(report));
@@ -145,16 +145,16 @@ Result<health::FrameReport> RecordingEstimator::State::process_located(const Rgb
   return report;
 }
 
-/// Relocalises a frame of the open segment in the map; where that succeeds, the frame is one of the map, and
-/// the segment is joined. A segment that has lost the camera some time before stays apart: nothing tells how
-/// the camera moved since.
+/// Relocalises a frame of the open segment in the map. On success, joins the segment and continues in the
+/// map. A segment in which the camera has been lost for some time stays separate, since the motion since then
+/// is unknown.
 Result<health::FrameReport> RecordingEstimator::State::look_for_map(const RgbdFrame& frame,
                                                                     health::FrameReport report) {
   const Tracking& in_segment = pipeline.tracking();
   const bool due =
       report.status == health::FrameStatus::lost || in_segment.frames % config.segments.search_every == 0;
   if (!due || !pipeline.novelty().complete()) return report;
-  constexpr double kDeadReckoned_s = 0.1;  // to a few millimetres
+  constexpr double kDeadReckoned_s = 0.1;  // within a few millimetres
   const bool is_connected =
       seconds_between(in_segment.located_ns, in_segment.timestamp_ns) <= kDeadReckoned_s;
   const SE3 T_segment_camera = pipeline.T_world_camera();
@@ -186,8 +186,7 @@ bool RecordingEstimator::State::may_begin_segment(const health::FrameReport& rep
                                        pipeline.novelty().complete(), config.terms, config.segments);
 }
 
-/// The frame becomes the first one of a new segment, unless it cannot be tracked from. An earlier segment
-/// stays apart.
+/// Starts a new segment at this frame, unless it cannot be tracked from. An earlier segment stays separate.
 Result<health::FrameReport> RecordingEstimator::State::begin_segment(const RgbdFrame& frame,
                                                                      health::FrameReport report) {
   const Tracking& lost = pipeline.tracking();
@@ -212,13 +211,14 @@ Result<health::FrameReport> RecordingEstimator::State::begin_segment(const RgbdF
   return first;
 }
 
-/// After the last frame.
+/// Closes the open segment after the last frame.
 void RecordingEstimator::State::leave_segment() {
   segments.close();
   if (map) std::ignore = pipeline.exchange(std::move(map));
 }
 
-/// True if a loop has corrected all poses: the world has moved, and the model is fused again.
+/// Applies an online loop correction, if there is one: moves all poses and fuses the model again. True if it
+/// did.
 Result<bool> RecordingEstimator::State::correct_by_loops() {
   Tracking& now = pipeline.tracking();
   const auto moved = now.loops.correct_online();
@@ -235,7 +235,7 @@ Result<bool> RecordingEstimator::State::correct_by_loops() {
   return true;
 }
 
-/// The model of the map, from every frame that was fused into it, at its pose of now.
+/// Fuses the model of the map again from all its fused frames at their corrected poses.
 Result<void> RecordingEstimator::State::fuse_all_again() {
   check(static_cast<bool>(replay), "an estimator that changes poses has a replay");
   pipeline.tracking().model = tsdf::TsdfVolume(config.tsdf);
@@ -250,7 +250,7 @@ Result<void> RecordingEstimator::State::fuse_again(const RgbdFrame& frame) {
   return pipeline.fuse_again(frame, *state);
 }
 
-/// Empty unless a loop has corrected the map.
+/// Empty if no loop has corrected the map.
 MapSegments::CorrectedPose RecordingEstimator::State::corrected_pose() const {
   if (!map_is_corrected) return {};
   return [&loops = of_map().loops](std::int64_t timestamp_ns) {

@@ -1,5 +1,4 @@
-// Images that a camera or its driver delivered twice: a repeated image is of an earlier instant than its
-// frame.
+// Detects images that a camera or its driver delivered twice. A repeated image is older than its frame.
 #pragma once
 
 #include <optional>
@@ -9,7 +8,7 @@
 
 namespace fusebench::core {
 
-/// What of a frame was not in the frame before.
+/// Which images of a frame are new.
 struct Novelty {
   bool color = true;
   bool depth = true;
@@ -19,8 +18,8 @@ struct Novelty {
 
 class RepeatedImages {
  public:
-  /// Compares the content of grey and depth with that of the last frame that was examined. An image of one
-  /// value (no light, no depth) shows no instant and is never a repetition.
+  /// Compares grey and depth with the last examined frame. A constant image (no light, no depth) never counts
+  /// as a repetition.
   [[nodiscard]] Novelty examine(const RgbdFrame& frame);
 
  private:

@@ -22,15 +22,15 @@
 
 namespace fusebench::core {
 
-/// What is known before the first frame.
+/// Prior information on the first frame.
 struct Beginning {
-  std::optional<filter::FilterState> motion = std::nullopt;  ///< of a restart: the velocities of this state
-  std::optional<filter::GaussianState> state =
-      std::nullopt;  ///< of a segment: all of the state at its first frame
+  /// restart: initial velocities are those of this state
+  std::optional<filter::FilterState> motion = std::nullopt;
+  std::optional<filter::GaussianState> state = std::nullopt;  ///< segment: complete state at its first frame
 };
 
-/// The complete state of tracking after a frame; a restart replaces it. Buffers without state (images,
-/// workspaces) are elsewhere.
+/// Complete state of tracking after a frame; a restart replaces it. Stateless buffers (images, workspaces)
+/// are stored elsewhere.
 struct Tracking {
   Tracking(const config::Config& config, const SensorRig& rig, Beginning begins_with = {});
 
@@ -42,17 +42,17 @@ struct Tracking {
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
   prediction::MotionScale motion_scale;           ///< of the tracked frames
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
-  std::int64_t located_ns = 0;                    ///< of the last one that was not lost
+  std::int64_t located_ns = 0;                    ///< capture instant of the last frame that was not lost
   int frames = 0;                                 ///< since the start
-  double turned_rad = 0;                          ///< since then, in all
-  int lost_frames = 0;                            ///< in a row, before the current one
-  bool carried_on = false;                        ///< the last frame has its pose from the velocity alone
+  double turned_rad = 0;                          ///< total rotation since the start
+  int lost_frames = 0;                            ///< consecutive, before the current one
+  bool carried_on = false;  ///< the pose of the last frame is predicted from the velocity alone
   RepeatedImages repeated_images;
   acceptance::FusionGate fusion_gate;
   filter::ColorDrift color_drift;
   measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
   alignment::TrackingReference reference;         ///< from the last fused frame
-  std::vector<patches::TrackedCentre> survivors;  ///< where the good patches are in the current frame
+  std::vector<patches::TrackedCentre> survivors;  ///< positions of the surviving patches in the current frame
 };
 
 }  // namespace fusebench::core

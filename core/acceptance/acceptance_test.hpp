@@ -1,4 +1,4 @@
-// A test that decides about a frame: a quantity, and the limit that it has to keep.
+// An acceptance test of a frame: a quantity and its limit.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@ enum class Bound { at_least, at_most };
 
 struct AcceptanceTest {
   std::string_view quantity;    ///< its name, with the unit
-  std::optional<double> value;  ///< nothing: the frame has none, and passes
+  std::optional<double> value;  ///< no value: the test passes
   Bound bound = Bound::at_least;
   double limit = 0;
-  std::string_view option;  ///< that sets the limit; empty: the limit is fixed
+  std::string_view option;  ///< option that sets the limit; empty: the limit is fixed
 };
 
-/// What the first test that fails says: quantity, value, limit and option; empty if all pass.
+/// Describes the first test that fails: quantity, value, limit and option. Empty if all pass.
 [[nodiscard]] std::string first_failure(std::span<const AcceptanceTest> tests);
 
 }  // namespace fusebench::acceptance

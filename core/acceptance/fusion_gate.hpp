@@ -1,4 +1,5 @@
-// Whether a frame is fused, and whether one that is lost begins a map segment. The paper leaves both open.
+// Decides whether a frame is fused, and whether a lost frame may begin a map segment. The paper leaves both
+// open.
 #pragma once
 
 #include "core/config/groups/config_fwd.hpp"
@@ -6,12 +7,12 @@
 
 namespace fusebench::acceptance {
 
-/// Decides which frames are fused, and patches cut from: those with a pose and with colour and depth of one
-/// instant, unless something new covers many patches. It is no part of the scene, and patches cut from it
-/// would lead astray; what stays there for health.max_occluded_frames is fused.
+/// Decides which frames are fused and give new patches. A frame is admitted if it has a pose, if its colour
+/// and depth belong to one instant, and if it is not occluded. An occluding object is not part of the scene,
+/// and patches cut from it would be wrong. An object that stays for health.max_occluded_frames is fused.
 class FusionGate {
  public:
-  /// Called once a frame. complete: neither colour nor depth are those of the frame before.
+  /// Call it once for each frame. complete: neither colour nor depth repeats the image of the previous frame.
   [[nodiscard]] bool admits(const health::FrameReport& report, bool complete,
                             const config::HealthConfig& config);
 
@@ -19,8 +20,8 @@ class FusionGate {
   int occluded_frames_ = 0;  ///< in a row
 };
 
-/// True if a lost frame may be the first one of a map segment (map_segments.hpp). lost_s: since the last
-/// frame that was not lost; complete: as above.
+/// True if a lost frame may be the first frame of a map segment (map_segments.hpp). lost_s: time since the
+/// last frame that was not lost. complete: as in FusionGate::admits().
 [[nodiscard]] bool may_begin_segment(const health::FrameReport& report, double lost_s, bool complete,
                                      const config::TermsConfig& terms, const config::SegmentsConfig& config);
 

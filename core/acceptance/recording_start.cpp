@@ -21,7 +21,7 @@ StartAction RecordingStart::judge(const health::FrameReport& report) {
   return StartAction::go_on;
 }
 
-/// A frame that is lost although its images are sound does not show what the first one showed.
+/// Counts a lost frame with sound images as evidence that the first frame was unsuitable.
 bool RecordingStart::is_false_start(const health::FrameReport& report) {
   return ++lost_frames_ >= config_.false_start_frames && health::is_sound(report.health);
 }

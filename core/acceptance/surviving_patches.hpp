@@ -1,4 +1,4 @@
-// Which patches are cut again after an update (Sec. 2.3).
+// Selects the patches that are cut again after an update (Sec. 2.3).
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace fusebench::acceptance {
 
-/// Where the patches that are good enough to be cut again are in the current frame: accepted, and with a mean
-/// intensity error of at most patches.max_mean_error (Sec. 2.3). The memory of `survivors` is used again.
+/// Writes the centres, in the current frame, of the patches that are cut again: accepted, with a mean
+/// intensity error of at most patches.max_mean_error (Sec. 2.3). Reuses the memory of `survivors`.
 void find_survivors(std::span<const patches::Patch> patches,
                     std::span<const measurement::PatchOutcome> outcomes, const config::PatchConfig& config,
                     std::vector<patches::TrackedCentre>& survivors);
 
-/// Whether the patches of the reference frame are to be cut anew from the current frame: in each frame, or
-/// when the image no longer agrees with them (patches.refresh). outcomes: of these patches, or none.
+/// True if the reference patches must be cut from the current frame: in each frame, or when the image does
+/// not fit them (patches.refresh). outcomes: those of these patches; may be empty.
 [[nodiscard]] bool needs_new_anchor(std::span<const measurement::PatchOutcome> outcomes,
                                     const config::PatchConfig& config);
 

@@ -24,7 +24,8 @@ std::array<AcceptanceTest, 5> update_tests(const health::FrameReport& report,
   return {{
       {"usable patches", report.patches_accepted, Bound::at_least, static_cast<double>(iekf.min_patches),
        "iekf.min_patches"},
-      // Against the model: what follows would be fused apart from what is there.
+      // Limits the pose uncertainty against the model: a frame with a larger one would be fused
+      // inconsistently.
       {"rotation sigma (degrees)", degrees(report.certainty.rotation_sigma_rad), Bound::at_most,
        health.max_rotation_sigma_deg, "health.max_rotation_sigma_deg"},
       {"position sigma (metres)", report.certainty.position_sigma_m, Bound::at_most,

@@ -1,4 +1,4 @@
-// Whether an update of the filter is accepted. The paper leaves this open.
+// Decides whether an update of the filter is accepted. The paper leaves this open.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace fusebench::acceptance {
 
-/// The tests of an update that the report describes, in the order in which they are evaluated.
+/// The acceptance tests of the update that the report describes, in the order of evaluation.
 [[nodiscard]] std::array<AcceptanceTest, 5> update_tests(const health::FrameReport& report,
                                                          const config::TermsConfig& terms,
                                                          const config::IekfConfig& iekf,
                                                          const config::HealthConfig& health);
 
-/// Why the update is rejected, with the diagnosis of its frame; empty if it is accepted.
+/// Reason of a rejection, with the diagnosis of the frame; empty if the update is accepted.
 [[nodiscard]] std::string rejection_reason(const health::FrameReport& report,
                                            const config::TermsConfig& terms, const config::IekfConfig& iekf,
                                            const config::HealthConfig& health);

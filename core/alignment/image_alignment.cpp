@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLeastDepth_m = 0.05;
 
-/// Huber's cost and weight of a whitened residual.
+/// Huber cost and weight of a whitened residual.
 struct Robust {
   double cost = 0;
   double weight = 1;
@@ -104,7 +104,7 @@ double ImageAlignment::trial_cost(const filter::PoseHypothesis& poses, const fil
     if (used_[i] == 0) continue;
     Vector3d in_camera = camera.to_camera(T_world_reference_ * points[i].point_camera);
     in_camera.z() = std::max(in_camera.z(), kLeastDepth_m);
-    // Leaving the image must not lower the cost: at the border the last pixel counts.
+    // A point that leaves the image must not lower the cost, so the nearest border pixel is used.
     const Vector2d pixel = camera.camera.project(in_camera);
     const IntensitySample seen = sample_bilinear(image, std::clamp(pixel.x(), 0.0, image.width - 1.0),
                                                  std::clamp(pixel.y(), 0.0, image.height - 1.0));

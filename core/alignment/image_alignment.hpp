@@ -1,6 +1,6 @@
 // Direct alignment of whole small images with a reference frame, level by level (Steinbruecker, Sturm and
-// Cremers 2011; Kerl et al. 2013), as a measurement of the filter. It finds the basin of convergence that the
-// patches start in, and adds nothing to their information.
+// Cremers 2011; Kerl et al. 2013), as a measurement of the filter. It only provides a start for the patches
+// within their basin of convergence. Its information is not used in the update.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ class ImageAlignment final : public filter::PoseMeasurement {
   ImageAlignment(const config::AlignmentConfig& alignment, const config::PhotometricConfig& photometric,
                  const SensorRig& rig);
 
-  /// pyramid: of the frame to align. The views must stay valid.
+  /// pyramid: of the frame to align; the views must stay valid.
   void observe(std::span<const GreyImage> pyramid, const ReferencePoints& reference,
                const SE3& T_world_reference, int coarsest_level);
 
@@ -32,7 +32,7 @@ class ImageAlignment final : public filter::PoseMeasurement {
                                   double fraction) override;
   void accept() override { light_.value = light_.trial; }
 
-  /// Share of the points of the last level that the last linearisation saw in the image.
+  /// Share of the points of the last level that were in the image at the last linearisation.
   [[nodiscard]] double seen_share() const;
 
  private:
@@ -48,7 +48,7 @@ class ImageAlignment final : public filter::PoseMeasurement {
   SE3 T_world_reference_;
   int coarsest_ = 0;
   int level_ = 0;
-  std::vector<char> used_;  ///< points that the last linearisation saw in the image
+  std::vector<char> used_;  ///< points that were in the image at the last linearisation
 };
 
 }  // namespace fusebench::alignment

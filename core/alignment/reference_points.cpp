@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLeastHeight_px = 8;
 
-/// The nearest surface over the footprint of a coarse pixel, which covers what is behind it.
+/// Smallest depth within the footprint of a coarse pixel: the nearest surface occludes the others.
 float nearest_depth_m(const DepthImage& depth_m, int x, int y, int reach_px) {
   float nearest = 0;
   const int step = std::max(1, reach_px);
@@ -25,7 +25,7 @@ float nearest_depth_m(const DepthImage& depth_m, int x, int y, int reach_px) {
   return nearest;
 }
 
-/// Zero where alignment is switched off.
+/// Zero if alignment is switched off.
 int alignment_levels(const PinholeCamera& camera, const config::AlignmentConfig& config) {
   if (config.coarsest_level < config.finest_level) return 0;
   int levels = 1;

@@ -1,4 +1,4 @@
-// What a frame leaves for the alignment of later images with it: a few points of each coarse pyramid level.
+// Points that a frame provides for the alignment of later images: a few of each coarse pyramid level.
 #pragma once
 
 #include <span>
@@ -9,16 +9,16 @@
 
 namespace fusebench::alignment {
 
-/// A pixel of a coarse pyramid level.
+/// A pixel of a coarse pyramid level with its measured depth.
 struct ReferencePoint {
-  Vector3d point_camera = Vector3d::Zero();  ///< metres, by measured depth, in the reference camera
+  Vector3d point_camera = Vector3d::Zero();  ///< metres, in the reference camera
   double intensity = 0;                      ///< grey levels
 };
 
-/// The pixels with depth of each level that is aligned by.
+/// The pixels with depth, for each level that is used for alignment.
 class ReferencePoints {
  public:
-  /// pyramid: of the frame, level 0 first, up to the coarsest level; depth of level 0, gated.
+  /// pyramid: of the frame, from level 0 to the coarsest level. depth_m: level 0, gated.
   void take(std::span<const GreyImage> pyramid, const DepthImage& depth_m, const PinholeCamera& camera,
             const config::AlignmentConfig& config);
 
@@ -29,11 +29,11 @@ class ReferencePoints {
 
  private:
   int finest_ = 0;
-  std::vector<std::vector<ReferencePoint>> levels_;  ///< from the finest on
+  std::vector<std::vector<ReferencePoint>> levels_;  ///< finest level first
 };
 
-/// Number of pyramid levels of a frame: those of the patches, and those that alignment needs (none where it
-/// is switched off; levels below eight pixels in height are of no use).
+/// Number of pyramid levels of a frame: at least patch_levels, and as many as alignment needs. Alignment
+/// needs none if it is switched off, and none below eight pixels in height.
 [[nodiscard]] int pyramid_levels(const PinholeCamera& camera, int patch_levels,
                                  const config::AlignmentConfig& alignment);
 

@@ -13,7 +13,7 @@
 namespace fusebench::alignment {
 
 namespace {
-constexpr double kLeastShare = 0.1;  // of the reference that an image can be compared with
+constexpr double kLeastShare = 0.1;  // smallest share of the reference points that gives a valid comparison
 }  // namespace
 
 double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoints& reference,
@@ -57,8 +57,8 @@ int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& referenc
   return level;
 }
 
-/// The camera moved on as before, or it stands still. Where the prediction allows more than the coarsest
-/// level converges from, also turned by twice that to each side.
+/// Candidate starts: constant motion and standstill. If the predicted uncertainty exceeds the convergence
+/// radius of the coarsest level, also rotations by twice that radius to each side.
 std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianState& prior,
                                                         const SE3& T_world_imu_last, double sigma_px,
                                                         const ReferencePoints& reference) const {
@@ -95,7 +95,7 @@ FoundStart StartSearch::find(const filter::GaussianState& prior, const SE3& T_wo
        starts(prior, T_world_imu_last, found.landing_sigma_px, reference)) {
     alignment_.observe(pyramid, reference, T_world_reference, found.coarsest_level);
     const filter::IekfResult result = filter::iekf_update(prior, alignment_, iterations, start);
-    // A start that sees less of the reference has fewer residuals, not a better fit.
+    // A start with fewer visible points has fewer residuals, so the cost is divided by the visible share.
     const double cost = result.map_cost_posterior / std::max(kLeastShare, alignment_.seen_share());
     if (!(cost < least)) continue;
     least = cost;

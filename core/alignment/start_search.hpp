@@ -1,5 +1,6 @@
-// Where the update of a frame starts. Patches converge from a few pixels; where the prediction may be farther
-// off, whole images are aligned first, from the coarsest level that is needed, and from more than one start.
+// Computes the start of the update of a frame. Patches converge from a distance of a few pixels. If the
+// prediction may be farther off, whole images are aligned first: from the coarsest level that is needed, and
+// from several starts.
 #pragma once
 
 #include <span>
@@ -13,11 +14,12 @@
 
 namespace fusebench::alignment {
 
-/// What a search found.
+/// Result of the search.
 struct FoundStart {
-  filter::MeasuredVector start = filter::MeasuredVector::Zero();  ///< as iekf_update() takes it
-  double landing_sigma_px = 0;  ///< standard deviation of where the prediction places a pixel, level 0
-  int coarsest_level = -1;  ///< of the alignment; -1: none was needed, the update starts at the prediction
+  filter::MeasuredVector start = filter::MeasuredVector::Zero();  ///< argument of iekf_update()
+  double landing_sigma_px = 0;  ///< standard deviation of the predicted position of a pixel, level 0
+  /// coarsest level that was aligned; -1: none was needed, the update starts at the prediction
+  int coarsest_level = -1;
 };
 
 class StartSearch {
@@ -27,9 +29,9 @@ class StartSearch {
               const config::PhotometricConfig& photometric, const config::IekfConfig& iekf,
               const SensorRig& rig);
 
-  /// prior: its reference pose is that of the frame that `reference` was taken from. T_world_imu_last: where
-  /// the camera is if it stands still. pyramid: of the new frame. `thorough`: on all levels, whatever the
-  /// prior says.
+  /// prior: its reference pose is that of the frame from which `reference` was taken. T_world_imu_last: pose
+  /// if the camera stands still. pyramid: of the new frame. thorough: aligns all levels, whatever the
+  /// uncertainty of the prior.
   [[nodiscard]] FoundStart find(const filter::GaussianState& prior, const SE3& T_world_imu_last,
                                 const ReferencePoints& reference, std::span<const GreyImage> pyramid,
                                 bool thorough);
@@ -47,8 +49,8 @@ class StartSearch {
   ImageAlignment alignment_;
 };
 
-/// Standard deviation, root mean square over the points of the coarsest level, of where the prediction places
-/// them in the new frame: pixels of level 0, the larger axis of each.
+/// Standard deviation of the predicted pixel positions in the new frame (pixels of level 0): root mean square
+/// over the points of the coarsest level, larger axis of each.
 [[nodiscard]] double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoints& reference,
                                       const SensorRig& rig);
 

@@ -1,4 +1,4 @@
-// What the next frame is compared with: everything that was taken from one frame.
+// Data of one frame that the next frame is compared with.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace fusebench::alignment {
 
 struct TrackingReference {
   std::vector<patches::Patch> patches;  ///< cut from the frame
-  ReferencePoints points;               ///< of its coarse levels
-  std::int64_t timestamp_ns = 0;        ///< its capture instant
+  ReferencePoints points;               ///< points of its coarse levels
+  std::int64_t timestamp_ns = 0;        ///< capture instant of the frame
 };
 
 }  // namespace fusebench::alignment

@@ -1,4 +1,4 @@
-// Bit sets in an integer.
+// Iteration over the bits of an integer.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 namespace fusebench {
 inline namespace base {
 
-/// Calls use(i) for each bit i that is set, from the lowest on.
+/// Calls use(i) for each set bit i, lowest first.
 template <std::unsigned_integral Bits, class Use>
 void for_each_bit(Bits bits, const Use& use) {
   for (; bits != 0; bits &= bits - 1) use(static_cast<std::size_t>(std::countr_zero(bits)));

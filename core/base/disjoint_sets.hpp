@@ -9,7 +9,7 @@
 namespace fusebench {
 inline namespace base {
 
-/// Sets of 0 to count - 1, at first each alone; a set is named after its least member.
+/// Partition of 0 to count - 1, initially into single elements. The least member identifies a set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {

@@ -1,5 +1,5 @@
-// Errors as values. Expected failures (bad input, a lost tracker) travel as Result<T>; programmer errors
-// throw InternalError through check(). Nothing in a library prints, exits or aborts.
+// Errors as values. Expected failures (bad input, a lost tracker) are returned as Result<T>; programmer
+// errors throw InternalError through check(). Libraries neither print nor exit nor abort.
 #pragma once
 
 #include <source_location>
@@ -11,7 +11,7 @@
 namespace fusebench {
 inline namespace base {
 
-/// What kind of failure it was; decides the exit code of the command line.
+/// Kind of failure; determines the exit code of the command line.
 enum class ErrorCode {
   usage,          ///< wrong command line
   configuration,  ///< unknown key, wrong type, out of range
@@ -22,7 +22,7 @@ enum class ErrorCode {
   internal,       ///< a bug
 };
 
-/// One clear sentence that names file:line or key = value (allowed range), and a hint on what to do.
+/// A message of one sentence with file:line or key = value (allowed range), and a hint on how to fix it.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
@@ -32,7 +32,7 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// Shorthand for `return tl::unexpected(Error{...})`.
+/// Short form of `return tl::unexpected(Error{...})`.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::string hint = {}) {
   return tl::unexpected<Error>(Error{code, std::move(message), std::move(hint)});
 }
@@ -61,7 +61,7 @@ class InternalError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/// Always-on check for programmer errors. Throws InternalError that names the place.
+/// Check for programmer errors, active in all builds. Throws InternalError with the source location.
 inline void check(bool condition, const char* what,
                   std::source_location where = std::source_location::current()) {
   if (!condition) {

@@ -9,7 +9,7 @@ namespace fusebench {
 inline namespace base {
 
 namespace {
-// Below this angle the series is exact to double precision and the closed form divides 0 by 0.
+// Below this angle the series is exact to double precision, and the closed form would divide 0 by 0.
 constexpr double kSmallAngleRad = 1e-5;
 }  // namespace
 
@@ -29,7 +29,7 @@ Quaterniond so3_exp(const Vector3d& phi_rad) {
 
 Vector3d so3_log(const Quaterniond& rotation) {
   Quaterniond q = rotation;
-  if (q.w() < 0) q.coeffs() *= -1.0;  // q and -q are the same rotation; w >= 0 is the short way round
+  if (q.w() < 0) q.coeffs() *= -1.0;  // q and -q are the same rotation; w >= 0 gives the shorter one
   const double sine = q.vec().norm();
   if (sine < kSmallAngleRad) return 2.0 * q.vec() / q.w();
   return 2.0 * std::atan2(sine, q.w()) / sine * q.vec();
@@ -74,7 +74,7 @@ SE3 interpolate(const SE3& a, const SE3& b, double fraction) {
 }
 
 Matrix3x2d s2_basis(const Vector3d& direction) {
-  // Gram-Schmidt against the axis that is least aligned; ties go to the lower index.
+  // Gram-Schmidt with the least aligned axis; the lower index on a tie.
   int axis = 0;
   direction.cwiseAbs().minCoeff(&axis);
   const Vector3d first = direction.cross(Vector3d::Unit(axis)).normalized();

@@ -1,7 +1,7 @@
 // Rotations, rigid transforms and directions.
 //
-// The convention in one equation: p_a = T_a_b * p_b, so adjacent frames cancel (T_a_c = T_a_b * T_b_c).
-// Perturbations act on the right, R * Exp(phi), with phi in radians in the local (body) frame.
+// Convention: p_a = T_a_b * p_b, so adjacent frames cancel: T_a_c = T_a_b * T_b_c.
+// Perturbations are on the right: R * Exp(phi), with phi in radians in the local (body) frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +36,7 @@ inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 /// Right Jacobian: Exp(phi + d) = Exp(phi) * Exp(Jr(phi) d) + O(d^2) (Forster et al., T-RO 2017, Eq. 8).
 [[nodiscard]] Matrix3d so3_right_jacobian(const Vector3d& phi_rad);
 
-/// A rigid transform T_a_b: maps coordinates of frame b into frame a.
+/// A rigid transform T_a_b: p_a = T_a_b * p_b.
 struct SE3 {
   Quaterniond rotation = Quaterniond::Identity();  ///< unit quaternion, R_a_b
   Vector3d translation = Vector3d::Zero();         ///< origin of b in a, metres
@@ -55,29 +55,29 @@ struct SE3 {
 /// Shortest rotation angle between two orientations, radians in [0, pi].
 [[nodiscard]] double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b);
 
-/// Standard deviation along the least certain axis: of the ellipsoid of a covariance, the longest one.
+/// Largest standard deviation of a covariance over all directions: the square root of its largest eigenvalue.
 [[nodiscard]] double largest_sigma(const Matrix3d& covariance);
 
-/// A pose moved along its tangent (right rotation in rad, then position of its origin in m).
+/// Perturbed pose: rotation R Exp(tangent[0..2] rad), position p + tangent[3..5] m.
 [[nodiscard]] SE3 pose_plus(const SE3& pose, const Vector6d& tangent);
 
-/// Inverse of pose_plus: the tangent that moves `from` to `to`.
+/// Inverse of pose_plus: the tangent d with from (+) d = to.
 [[nodiscard]] Vector6d pose_minus(const SE3& to, const SE3& from);
 
-/// A covariance in that tangent, whose position is in frame a, with the position in frame b.
+/// Transforms a pose covariance (tangent of pose_plus) from a position in frame a to a position in frame b.
 [[nodiscard]] Matrix6d with_position_in(const Quaterniond& R_b_a, const Matrix6d& covariance);
 
-/// Geodesic interpolation: a at fraction 0, b at fraction 1 (rotation and translation apart).
+/// Interpolation from a (fraction 0) to b (fraction 1): geodesic rotation, linear translation.
 [[nodiscard]] SE3 interpolate(const SE3& a, const SE3& b, double fraction);
 
-/// Orthonormal basis (columns) of the plane orthogonal to a unit direction; the tangent of S2 at it.
-/// A pure function of the direction (not continuous: the reference axis switches).
+/// Orthonormal basis (columns) of the plane orthogonal to a unit direction: the tangent of S2. A pure
+/// function of the direction, with discontinuities where the reference axis changes.
 [[nodiscard]] Matrix3x2d s2_basis(const Vector3d& direction);
 
-/// Moves a unit direction along its tangent: Exp(B(direction) * delta) * direction. delta in radians.
+/// Moves a unit direction by a tangent vector: Exp(B(direction) * delta) * direction. delta in radians.
 [[nodiscard]] Vector3d s2_plus(const Vector3d& direction, const Vector2d& delta_rad);
 
-/// Inverse of s2_plus: the delta that moves `from` to `to` (both unit).
+/// Inverse of s2_plus: the delta with from (+) delta = to (both unit).
 [[nodiscard]] Vector2d s2_minus(const Vector3d& to, const Vector3d& from);
 
 }  // namespace base

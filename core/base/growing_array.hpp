@@ -1,4 +1,4 @@
-// A long array that grows without being copied.
+// A large array that grows without a copy.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 namespace fusebench {
 inline namespace base {
 
-/// An array of plain values whose memory is grown by realloc(): for large ones the system moves pages, not
-/// bytes, so that neither time nor twice the memory is spent, and pages that were never written take no
-/// memory.
+/// An array of trivial values that grows by realloc(). For large arrays the operating system remaps pages
+/// instead of copying bytes, so growing costs little time and no second copy in memory. Pages that were never
+/// written use no memory.
 template <class T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -43,7 +43,7 @@ class GrowingArray {
   [[nodiscard]] T* data() { return values_.get(); }
   [[nodiscard]] const T* data() const { return values_.get(); }
 
-  /// Adds uninitialised values. Throws std::bad_alloc.
+  /// Appends uninitialised values. Throws std::bad_alloc.
   void grow_to(std::size_t size) {
     if (size > capacity_) {
       const std::size_t capacity = size + size / 2;

@@ -10,7 +10,7 @@ inline namespace base {
 
 template <class Pixel>
 IntensitySample sample_bilinear(const Image<Pixel>& image, double x, double y) {
-  // The cell [x0, x0 + 1) x [y0, y0 + 1); the last row and column belong to the cell before them.
+  // Interpolation cell [x0, x0 + 1] x [y0, y0 + 1], clamped to the last cell at the right and bottom border.
   const int x0 = std::clamp(static_cast<int>(x), 0, image.width - 2);
   const int y0 = std::clamp(static_cast<int>(y), 0, image.height - 2);
   const double ax = x - x0;
@@ -51,8 +51,8 @@ std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels) {
 
 GreyImage to_grey(const ColorImage& color) {
   GreyImage grey(color.width, color.height);
-  // 14-bit fixed point, rounded to nearest; the weights add up to 2^14.
-  // Pointers of its own tell the compiler that bytes written are no part of either image's description.
+  // 14-bit fixed point, rounded to nearest; the weights add up to 2^14. Local pointers let the compiler
+  // assume that the written bytes do not alias the image headers.
   const Rgb* const colors = color.data.data();
   std::uint8_t* const levels = grey.data.data();
   const std::size_t count = color.data.size();

@@ -22,7 +22,7 @@ struct Image {
         data(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), fill) {}
 
   [[nodiscard]] bool empty() const { return data.empty(); }
-  /// Pixel values are unspecified afterwards; the allocation is reused.
+  /// Reuses the allocation. The pixel values are unspecified afterwards.
   void resize(int width_px, int height_px) {
     width = width_px;
     height = height_px;
@@ -41,26 +41,25 @@ using GreyImage = Image<std::uint8_t>;    ///< grey levels 0-255
 using ColorImage = Image<Rgb>;
 using DepthImage = Image<float>;  ///< z-depth along the optical axis in metres, 0 = no measurement
 
-/// A grey-level sample between pixels, and its derivative by the coordinates (grey levels per pixel).
+/// An interpolated grey level and its derivative by the coordinates (grey levels per pixel).
 struct IntensitySample {
   double value = 0;
   double dx = 0;
   double dy = 0;
 };
 
-/// Bilinear interpolation with the exact derivative of the interpolant, so that analytic Jacobians equal
-/// numeric ones. Needs 0 <= x <= width - 1 (same for y); the caller checks.
-/// Pixels are bytes or floats.
+/// Bilinear interpolation with the exact derivative of the interpolant, so analytic Jacobians equal numeric
+/// ones. Requires 0 <= x <= width - 1 and 0 <= y <= height - 1 (not checked). Pixels are bytes or floats.
 template <class Pixel>
 [[nodiscard]] IntensitySample sample_bilinear(const Image<Pixel>& image, double x, double y);
 
-/// Grey-level pyramid, level 0 = the image, each level half the size (5x5 binomial filter in integer
-/// arithmetic, hence the same on every machine). Pixel (x, y) of level l lies at (x, y) * 2^l of level 0.
+/// Grey-level pyramid: level 0 is the image, each further level has half the size (5x5 binomial filter in
+/// integer arithmetic, identical on all machines). Pixel (x, y) of level l is at (x, y) * 2^l of level 0.
 [[nodiscard]] std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels);
-/// The same into existing buffers.
+/// Variant of build_pyramid() that reuses the buffers of `pyramid`.
 void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& pyramid);
 
-/// Grey image by ITU-R BT.601 weights in integer arithmetic (0.299 R + 0.587 G + 0.114 B).
+/// Grey image by ITU-R BT.601 weights: 0.299 R + 0.587 G + 0.114 B, in integer arithmetic.
 [[nodiscard]] GreyImage to_grey(const ColorImage& color);
 
 }  // namespace base

@@ -1,4 +1,4 @@
-// Intensity residual of each tracked pixel: output of the estimator, input of the intensity metrics.
+// Intensity residuals of tracked pixels: output of the estimator, input of the intensity metrics.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,13 +11,12 @@ inline namespace base {
 /// |I_k - I_{k-1}| of one pixel of a tracked patch at level 0, before robust weighting and brightness
 /// correction.
 struct IntensityResidual {
-  std::uint32_t reference_pixel =
-      0;                      ///< v * width + u in frame k-1: the same pixel has the same key in all variants
-  float difference_grey = 0;  ///< absolute, grey levels
-  bool accepted = false;      ///< its patch also passed the chi-square gate
+  std::uint32_t reference_pixel = 0;  ///< v * width + u in frame k-1; identifies the pixel in all variants
+  float difference_grey = 0;          ///< absolute, grey levels
+  bool accepted = false;              ///< its patch passed the chi-square gate
 };
 
-/// Where that pixel was warped to in frame k, and what it is compared with.
+/// Position in frame k to which a pixel is warped, and the reference intensity.
 struct WarpedPixel {
   std::uint32_t patch = 0;  ///< number of its patch in the frame
   Eigen::Vector2f warped_px = Eigen::Vector2f::Zero();
@@ -25,18 +24,18 @@ struct WarpedPixel {
   float observed_grey = 0;
 };
 
-/// One of the size x size pixels of a tracked patch, whether it is used or not: what other definitions of the
-/// intensity error are computed from.
+/// One of the size x size pixels of a tracked patch, used or not. Input of the other definitions of the
+/// intensity error.
 struct SquarePixel {
   std::uint32_t patch = 0;
-  bool accepted = false;       ///< its patch passed the chi-square gate
-  bool visible = false;        ///< it has a surface and is not occluded; otherwise it moves as the visible
-                               ///< ones of its patch do in the mean
-  float difference_grey = 0;   ///< absolute, the image interpolated where the pixel lands
-  float whole_pixel_grey = 0;  ///< absolute, the image at the nearest whole pixel
+  bool accepted = false;  ///< its patch passed the chi-square gate
+  /// has a surface and is not occluded; other pixels move with the mean of the visible ones
+  bool visible = false;
+  float difference_grey = 0;   ///< absolute, image interpolated at the warped position
+  float whole_pixel_grey = 0;  ///< absolute, image at the nearest whole pixel
 };
 
-/// The same pixels in the first two lists.
+/// Residuals of one frame. The first two lists have the same pixels in the same order.
 struct TrackedPixels {
   std::vector<IntensityResidual> intensity;
   std::vector<WarpedPixel> warped;

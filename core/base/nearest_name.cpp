@@ -9,8 +9,8 @@ namespace fusebench {
 inline namespace base {
 
 namespace {
-/// Damerau's distance (letters left out, put in, replaced, or neighbours exchanged), one row of the table at
-/// a time; of the part of b that is most like a, if only a part has to be.
+/// Damerau's distance (deletion, insertion, replacement, transposition of neighbours), computed row by row.
+/// of_a_part: distance to the most similar substring of b.
 std::size_t edit_distance(std::string_view a, std::string_view b, bool of_a_part = false) {
   std::vector<std::size_t> row(b.size() + 1);
   if (!of_a_part) std::iota(row.begin(), row.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::string_view without_dashes(std::string_view flag) {
 }
 
 bool are_alike(std::string_view a, std::string_view b) {
-  constexpr std::size_t kShortest = 3;  // letters of a part that says something
+  constexpr std::size_t kShortest = 3;  // least number of letters of a meaningful substring
   a = without_dashes(a);
   b = without_dashes(b);
   if (a.size() > b.size()) std::swap(a, b);
@@ -49,7 +49,7 @@ bool begins_with(std::string_view name, std::string_view beginning) {
 
 std::string nearest_name(std::string_view name, std::span<const std::string_view> names) {
   std::string_view best;
-  // Whoever types a beginning has left the rest away and not mistyped another, shorter name.
+  // A prefix is preferred: an incomplete name is more likely than a misspelling of another, shorter name.
   std::pair<bool, std::size_t> best_rank;
   for (const std::string_view candidate : names) {
     const bool begun = begins_with(candidate, name);

@@ -1,4 +1,4 @@
-// "Did you mean": the nearest name by its beginning, then by edit distance.
+// Suggests the nearest name: by prefix first, then by edit distance.
 #pragma once
 
 #include <span>
@@ -9,18 +9,20 @@
 namespace fusebench {
 inline namespace base {
 
-/// Of the names that are alike the one with the least edit distance (the first of equals), those that
-/// begin with `name` before others if that has at least 2 letters behind its dashes; empty where none is
-/// alike (dashes in front make nothing alike). Two are alike if one is such a beginning of the other, if at
-/// most half of the longer one differs, or less than a third of the shorter one from a part of the longer
-/// one.
+/// Returns the most similar name; empty if none is similar. Leading dashes are ignored for similarity. Two
+/// names are similar if
+/// - one is a prefix of the other,
+/// - they differ by at most half of the longer one, or
+/// - the shorter one differs by less than a third from a substring of the longer one.
+/// Names that begin with `name` (at least 2 letters after the dashes) are preferred, then the least edit
+/// distance, then the first.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string_view> names);
 
-/// " (nearest: NAME)", to go on behind "unknown ... 'name'"; empty where no name is alike.
+/// " (nearest: NAME)", to be appended to "unknown ... 'name'"; empty if no name is similar.
 [[nodiscard]] std::string nearest_hint(std::string_view name, std::span<const std::string_view> names);
 [[nodiscard]] std::string nearest_hint(std::string_view name, const std::vector<std::string>& names);
 
-/// "did you mean NAME?"; empty where no name is alike.
+/// "did you mean NAME?"; empty if no name is similar.
 [[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string_view> names);
 
 }  // namespace base

@@ -15,8 +15,8 @@
 namespace fusebench {
 inline namespace base {
 
-/// Debian's oneTBB is not built with the thread sanitizer, which does not see that its tasks wait for each
-/// other and takes all of them for races. There, plain threads run the chunks: what these share is the same.
+/// Debian's oneTBB is built without the thread sanitizer, so the sanitizer misses its synchronisation and
+/// reports false races. In that build plain threads run the chunks.
 struct Workers::Arena {
   explicit Arena(int threads);
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
@@ -24,7 +24,8 @@ struct Workers::Arena {
 #if defined(__SANITIZE_THREAD__)
   std::size_t thread_count;
 #else
-  /// Without it the library takes no more threads than the machine has, and prints a warning.
+  /// Raises the thread limit of the library, which otherwise prints a warning and uses at most one thread for
+  /// each core.
   tbb::global_control limit;
   tbb::task_arena arena;
 #endif

@@ -1,6 +1,5 @@
-// Deterministic parallel loops: work is cut into chunks whose size does not depend on the thread count, each
-// chunk writes its own slot, and the slots are reduced in index order. Results therefore do not depend on the
-// number of threads.
+// Deterministic parallel loops. The chunk size does not depend on the number of threads, each chunk writes
+// its own slot, and slots are reduced in index order. Results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 namespace fusebench {
 inline namespace base {
 
-/// A fixed number of threads to run chunks on. Cheap to pass by reference, not copyable.
+/// A fixed number of threads that run chunks. Not copyable; pass by reference.
 class Workers {
  public:
   /// threads >= 1.
@@ -23,8 +22,8 @@ class Workers {
 
   [[nodiscard]] int threads() const { return threads_; }
 
-  /// Calls body(begin, end) for consecutive chunks of [0, count), in any order, possibly at once. Exceptions
-  /// of the body arrive at the caller.
+  /// Calls body(begin, end) for the chunks of [0, count), in any order and concurrently. Rethrows an
+  /// exception of the body to the caller.
   void for_chunks(std::size_t count, std::size_t chunk_size,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) const;
 

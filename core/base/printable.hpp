@@ -1,4 +1,4 @@
-// How text from an unknown file is shown in messages.
+// Printable form of untrusted text for messages.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 namespace fusebench {
 inline namespace base {
 
-/// The text in printable ASCII: every other byte as \xNN; after about `most` characters "..." ends it.
-/// A message stays one line of valid UTF-8 this way, whatever the file holds.
+/// Text in printable ASCII on one line: every other byte as \xNN, cut after about `most` characters and
+/// marked by "...".
 [[nodiscard]] std::string printable(std::string_view text, std::size_t most = 40);
 
 }  // namespace base

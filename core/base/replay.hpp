@@ -1,4 +1,4 @@
-// The frames of a recording once more, for what changes the poses of frames that it has seen.
+// Second pass over the frames of a recording, for systems that correct the poses of earlier frames.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@ namespace fusebench {
 
 using FrameVisitor = std::function<Result<void>(const RgbdFrame& frame)>;
 
-/// Calls the visitor with every frame of the recording up to the newest one that was processed, in order.
-/// Errors: the first one of the visitor, which ends the replay, and those of reading a frame.
+/// Calls the visitor with each frame of the recording, in order, up to the newest processed one. Errors: the
+/// first one of the visitor, which ends the replay, and errors of reading a frame.
 using Replay = std::function<Result<void>(const FrameVisitor& visit)>;
 
 }  // namespace fusebench

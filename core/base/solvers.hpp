@@ -1,6 +1,6 @@
-// Eigen's solvers of three and six unknowns, compiled once (solvers.cpp): each takes seconds to compile, in
-// every source that uses one. What is included here is used as ever; arguments that are expressions, not
-// matrices, are compiled where they stand.
+// Eigen's solvers for three and six unknowns, instantiated once in solvers.cpp, since each takes seconds to
+// compile. Calls need no change. Calls with an expression as the argument, not a matrix, are instantiated at
+// the place of the call.
 #pragma once
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,4 @@
-// Sparse matrices of Eigen that share no code with those in Ceres.
+// Eigen's sparse matrices with an index type that differs from that of Ceres.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -7,9 +7,9 @@
 namespace fusebench {
 inline namespace base {
 
-/// Indices of 64 bits, unlike those in Ceres: Debian builds that library (a static one) without AVX, the
-/// linker keeps one copy of every function that both use, and memory of one alignment must not be freed as
-/// another.
+/// Ceres uses 32-bit indices. Debian builds its static library without AVX, and the linker would keep one
+/// copy of every shared template function. Memory of one alignment would then be freed with another. 64-bit
+/// indices keep the instances separate.
 using SparseIndex = std::ptrdiff_t;
 using SparseMatrixd = Eigen::SparseMatrix<double, Eigen::ColMajor, SparseIndex>;
 using SparseRowsd = Eigen::SparseMatrix<double, Eigen::RowMajor, SparseIndex>;

@@ -1,5 +1,5 @@
-// The values that all layers share. Aggregates with defaults; SI units; time in integer nanoseconds.
-// Camera axes: x right, y down, z forward.
+// Value types of all layers: aggregates with defaults, SI units, time in integer nanoseconds. Camera axes: x
+// right, y down, z forward.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace fusebench {
 inline namespace base {
 
-inline constexpr double kGravity_mps2 = 9.81;  ///< magnitude only; the direction is a state of the filter
+inline constexpr double kGravity_mps2 = 9.81;  ///< magnitude; the direction is part of the filter state
 
 [[nodiscard]] constexpr double seconds_between(std::int64_t begin_ns, std::int64_t end_ns) {
   return 1e-9 * static_cast<double>(end_ns - begin_ns);
@@ -35,11 +35,11 @@ struct PinholeCamera {
     return {fx_px * point_camera.x() / point_camera.z() + cx_px,
             fy_px * point_camera.y() / point_camera.z() + cy_px};
   }
-  /// The point at z-depth depth_m behind the pixel, in the camera frame.
+  /// The point in the camera frame at pixel (u, v) and z-depth depth_m.
   [[nodiscard]] Vector3d back_project(double u_px, double v_px, double depth_m) const {
     return {(u_px - cx_px) / fx_px * depth_m, (v_px - cy_px) / fy_px * depth_m, depth_m};
   }
-  /// Derivative of project() by the point (pixels per metre).
+  /// Derivative of project() with respect to the point (pixels per metre).
   [[nodiscard]] Matrix2x3d projection_jacobian(const Vector3d& point_camera) const {
     const double inverse_z = 1.0 / point_camera.z();
     Matrix2x3d j;
@@ -51,7 +51,7 @@ struct PinholeCamera {
 
 /// One colour-depth pair; depth is registered to the colour camera.
 struct RgbdFrame {
-  std::int64_t timestamp_ns = 0;       ///< the colour image's stamp: what outputs call the frame
+  std::int64_t timestamp_ns = 0;       ///< stamp of the colour image; identifies the frame in outputs
   std::int64_t capture_offset_ns = 0;  ///< instant of the colour image (its middle row) minus its stamp
   std::int64_t depth_offset_ns = 0;    ///< instant of the depth image minus that of the colour image
   ColorImage color;
@@ -65,8 +65,7 @@ struct RgbdFrame {
 struct ImuSample {
   std::int64_t timestamp_ns = 0;
   Vector3d angular_velocity_radps = Vector3d::Zero();
-  Vector3d specific_force_mps2 =
-      Vector3d::Zero();  ///< what an accelerometer reads: a - g, so +9.81 up at rest
+  Vector3d specific_force_mps2 = Vector3d::Zero();  ///< specific force a - g: +9.81 upwards at rest
 };
 
 /// Continuous-time noise densities of an IMU (Kalibr's convention).
@@ -77,26 +76,26 @@ struct ImuNoise {
   double accelerometer_bias_mps3_sqrthz = 0;  ///< bias random walk, m/s^3/sqrt(Hz)
 };
 
-/// When the rows of an image are exposed. Zero read-out is a global shutter.
+/// Exposure times of the image rows. A read-out time of zero means a global shutter.
 struct SensorTiming {
   double color_readout_s = 0;  ///< between the first and the last row
-  double depth_readout_s = 0;  ///< the same for depth
+  double depth_readout_s = 0;  ///< between the first and the last row of depth
   double depth_delay_s =
       0;  ///< delay of the depth image behind its stamp, relative to colour (readers apply it)
-  // Standard deviations: how well these are known. Zero is exactly.
+  // Standard deviations of the values above; zero means exact.
   double color_readout_sigma_s = 0;
   double depth_readout_sigma_s = 0;
   double depth_delay_sigma_s = 0;
 };
 
-/// Calibration of a recording's sensors, as the estimator needs it.
+/// Calibration of the sensors of a recording, as the estimator requires it.
 struct SensorRig {
   PinholeCamera camera;
   SensorTiming timing;
   SE3 T_imu_camera;
   ImuNoise imu_noise;
-  bool imu_axes_are_exact = false;  ///< their scale and rotation: of an IMU that was made from a trajectory
-  /// Pose of the first frame's camera in the world of a run; absent: the identity, exactly.
+  bool imu_axes_are_exact = false;  ///< scale and rotation are exact: a synthetic IMU
+  /// Pose of the camera of the first frame in the world frame of a run. Absent: the identity, exactly.
   std::optional<SE3> T_world_first_camera = {};
 
   [[nodiscard]] SE3 first_camera() const { return T_world_first_camera.value_or(SE3{}); }
@@ -108,16 +107,16 @@ struct StampedPose {
 };
 using Trajectory = std::vector<StampedPose>;  ///< sorted by time, stamps unique
 
-/// Indexed triangle mesh in the world frame (metres), or surfels. normals, colors, quality and radii_m are
-/// empty or one per vertex.
+/// Indexed triangle mesh or surfels in the world frame (metres). normals, colors, quality and radii_m are
+/// empty or have one entry for each vertex.
 template <class Scalar>
 struct BasicMesh {
   std::vector<Eigen::Matrix<Scalar, 3, 1>> vertices;
-  std::vector<Eigen::Vector3f> normals;  ///< unit, pointing out of the surface
+  std::vector<Eigen::Vector3f> normals;  ///< unit, outwards
   std::vector<Rgb> colors;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
-  std::vector<float> quality = {};                      ///< any number, such as the vertex's error
-  std::vector<float> radii_m = {};  ///< of surfels: discs around the vertices, across the normals
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside
+  std::vector<float> quality = {};                      ///< any scalar, for example the error of the vertex
+  std::vector<float> radii_m = {};  ///< of surfels: discs at the vertices, orthogonal to the normals
 
   template <class Other>
   [[nodiscard]] BasicMesh<Other> cast() const {
@@ -131,8 +130,8 @@ struct BasicMesh {
     return result;
   }
 };
-using Mesh = BasicMesh<float>;          ///< as it is reconstructed and drawn
-using PreciseMesh = BasicMesh<double>;  ///< as files hold it, and as it is measured
+using Mesh = BasicMesh<float>;          ///< reconstructed and drawn meshes
+using PreciseMesh = BasicMesh<double>;  ///< meshes of files and of measurements
 
 }  // namespace base
 }  // namespace fusebench

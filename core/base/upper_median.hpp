@@ -8,7 +8,8 @@
 namespace fusebench {
 inline namespace base {
 
-/// The median of the values; of an even number the larger of the two in the middle. Values must not be empty.
+/// The median of the values; the larger of the two middle values if their number is even. Values must not be
+/// empty.
 template <class Value>
 [[nodiscard]] Value upper_median(std::vector<Value> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -1,4 +1,4 @@
-// Images at the size that ferns ask about: means of cells of the frame's.
+// Small images for ferns: means over the cells of a frame.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@ namespace fusebench::ferns {
 
 inline constexpr int kWidth = 80;
 inline constexpr int kHeight = 60;
-// Thresholds of tests on depth: what cameras see in rooms.
+// Thresholds of the depth tests: the depth range of rooms.
 inline constexpr double kNearest_m = 0.4;
-inline constexpr double kReach_m = 3.6;  ///< beyond the nearest
+inline constexpr double kReach_m = 3.6;  ///< range from kNearest_m on
 
-/// The pixels of a cell, at least one: first and one past the last.
+/// The pixels of a cell, at least one: begin and end (exclusive).
 struct Cells {
   int begin;
   int end;
@@ -23,7 +23,7 @@ struct Cells {
   return {begin, std::max(begin + 1, (index + 1) * size / count)};
 }
 
-/// Of the pixels of a cell that have depth; 0 where none has.
+/// Mean of the pixels of each cell that have depth; 0 if none has.
 [[nodiscard]] Image<float> mean_depth_m(const DepthImage& depth_m);
 
 }  // namespace fusebench::ferns

@@ -12,7 +12,7 @@ namespace fusebench::ferns {
 namespace {
 
 constexpr std::size_t kChannels = kTestsOfFern;  // red, green, blue, depth
-constexpr double kMeanGrey = 110;                // that colour is scaled to
+constexpr double kMeanGrey = 110;                // mean to which colour is scaled
 constexpr std::uint64_t kSeed = 20261125;
 
 struct FernTest {

@@ -1,5 +1,5 @@
-// What a place looks like from afar: ferns on a small image of colour and depth. An image of 80 pixels in
-// width hardly changes by motion blur that leaves no corner in one of 640.
+// Appearance of a place: ferns on a small image of colour and depth. Motion blur that removes all corners of
+// an image of 640 pixels in width hardly changes one of 80 pixels.
 #pragma once
 
 #include "core/base/image.hpp"
@@ -7,9 +7,9 @@
 
 namespace fusebench::ferns {
 
-/// The tests of a fern are one each on red, green, blue and depth. color and depth_m (0 = no measurement)
-/// have one size, at least 80x60. Brightness drops out: colour counts against the mean of the image. Tests
-/// are the same in every run and on every machine.
+/// Each fern has one test on each of red, green, blue and depth. color and depth_m (0 = no measurement) have
+/// one size, at least 80x60. Colour is divided by the mean of the image, so brightness has no effect. The
+/// tests are fixed on all machines.
 [[nodiscard]] FernCode color_fern_code(const ColorImage& color, const DepthImage& depth_m);
 
 }  // namespace fusebench::ferns

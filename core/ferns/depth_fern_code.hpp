@@ -1,5 +1,5 @@
-// What a place looks like from afar by its depth alone: ferns on a small image of it. For images that
-// darkness or motion blur leave no colour to ask about.
+// Appearance of a place by depth alone: ferns on a small depth image. For images without usable colour
+// (darkness, motion blur).
 #pragma once
 
 #include "core/base/image.hpp"
@@ -7,8 +7,8 @@
 
 namespace fusebench::ferns {
 
-/// All tests of a fern are on depth (metres, 0 = no measurement), of an image of any size. Tests are the same
-/// in every run and on every machine.
+/// All tests of a fern are on depth (metres, 0 = no measurement) of an image of any size. The tests are fixed
+/// on all machines.
 [[nodiscard]] FernCode depth_fern_code(const DepthImage& depth_m);
 
 }  // namespace fusebench::ferns

@@ -1,6 +1,6 @@
 // Codes of images by random ferns (Glocker et al., "Real-Time RGB-D Camera Relocalization via Randomized
-// Ferns for Keyframe Encoding", 2015): each fern asks four yes-or-no questions about pixels of a small image,
-// and images that answer alike show the same place.
+// Ferns for Keyframe Encoding", 2015). Each fern has four binary tests on pixels of a small image. Images
+// with similar codes show the same place.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@ namespace fusebench::ferns {
 inline constexpr std::size_t kFerns = 500;
 inline constexpr std::size_t kTestsOfFern = 4;
 
-/// Of every fern one number: bit t is set if the image passes its test t.
+/// One number for each fern: bit t is set if the image passes test t.
 using FernCode = std::array<std::uint8_t, kFerns>;
 
-/// Records that the image passes this test, counted over all ferns: 0 to kFerns * kTestsOfFern - 1.
+/// Sets the bit of a passed test. test: index over all ferns, 0 to kFerns * kTestsOfFern - 1.
 void pass(FernCode& code, std::size_t test);
 
 /// Share of the ferns that differ, 0 to 1.
 [[nodiscard]] double dissimilarity(const FernCode& a, const FernCode& b);
 
-/// From 0 to below 1, the same on every machine.
+/// Uniform in [0, 1), identical on all machines.
 [[nodiscard]] double uniform(std::mt19937_64& generator);
 
 }  // namespace fusebench::ferns

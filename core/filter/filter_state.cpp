@@ -59,8 +59,8 @@ StateMatrix chart_transport(const FilterState& state, const StateVector& delta) 
   StateMatrix transport = StateMatrix::Identity();
   transport.block<3, 3>(kRotation, kRotation) = so3_right_jacobian(delta.segment<3>(kRotation));
   // S2: Exp(B (d + e)) g = Exp(B d) Exp(Jr(B d) B e) g, so the direction at d turns about the axis Exp(B d)
-  // Jr(B d) B e. That axis, seen in the basis at the new direction, is the new tangent vector (a part along
-  // the direction is no motion).
+  // Jr(B d) B e. The new tangent vector is this axis in the basis at the new direction (its part along the
+  // direction is no motion).
   const Vector3d& from = state.gravity_direction_world;
   const Vector3d axis = s2_basis(from) * delta.segment<2>(kGravity);
   const Vector3d to = so3_exp(axis) * from;

@@ -17,15 +17,15 @@ struct Iterate {
   MeasuredVector y = MeasuredVector::Zero();
   StateVector delta = StateVector::Zero();
   MeasuredVector measured = MeasuredVector::Zero();  ///< B d
-  TangentVector tangents = TangentVector::Zero();    ///< of the poses, at the prior's pose
+  TangentVector tangents = TangentVector::Zero();    ///< of both poses, at the prior's pose
   FilterState state;
   PoseHypothesis poses;
 
-  ReadoutVector readout = ReadoutVector::Zero();  ///< errors of it, counted from the prior
+  ReadoutVector readout = ReadoutVector::Zero();  ///< read-out errors relative to the prior
 };
 
-/// What is measured at the prior: the reference was corrected by an earlier update of the same patches, and
-/// the model keeps what is wrong with it.
+/// B x at the prior: the reference may have been corrected by an earlier update of the same patches, and the
+/// model has an offset.
 MeasuredVector known_at(const FilterState& prior) {
   const Matrix6d carried = pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
   MeasuredVector known = MeasuredVector::Zero();
@@ -52,8 +52,8 @@ class Update {
     const int stages = measurement_.stages();
     for (int stage = 0; stage < stages; ++stage) {
       const bool last = stage + 1 == stages;
-      // Coarse stages only bring the estimate into the basin; at least one iteration is left for the finest
-      // stage.
+      // The coarse stages only need to reach the basin of convergence; at least one iteration is reserved for
+      // the finest stage.
       const int budget = last ? config_.max_iterations - result.iterations
                               : std::min(config_.coarse_iterations,
                                          config_.max_iterations - result.iterations - (stages - 1 - stage));
@@ -88,8 +88,8 @@ class Update {
     return prior_cost + measurement_cost;
   }
 
-  /// Derivatives of the tangents of both poses at the iterate by the chart coordinates at the prior: of their
-  /// rotations. All else is its own coordinate.
+  /// Derivatives of the tangents of both poses at the iterate with respect to the chart at the prior. Only
+  /// the rotations differ from the identity.
   struct ChartJacobian {
     explicit ChartJacobian(const Iterate& iterate)
         : rotations{{{0, so3_right_jacobian(iterate.tangents.head<3>())},
@@ -101,7 +101,7 @@ class Update {
       return vector;
     }
 
-    std::array<std::pair<int, Matrix3d>, 2> rotations;  ///< each with its first row
+    std::array<std::pair<int, Matrix3d>, 2> rotations;  ///< first row and derivative of each
   };
 
   /// Information and gradient of the measurement in the chart at the prior.
@@ -133,16 +133,16 @@ class Update {
     ChartQuadratic result;
     result.add(quadratic.by_reference, quadratic.readout_by_reference, 0);
     if (parts == Parts::all) result.add(quadratic.by_model, quadratic.readout_by_model, kPoseSize);
-    result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout - quadratic.undone);
+    result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout - quadratic.compensated);
     result.carry(ChartJacobian(now));
     if (config_.measurement == config::MeasurementForm::scalar_energy)
       take_as_one_number(quadratic.cost(now.readout), result);
     return result;
   }
 
-  /// Eq. 17: one residual, the energy, whose derivative is the gradient of all.
+  /// Eq. 17: a single residual, the energy, whose Jacobian is the total gradient.
   static void take_as_one_number(double energy, ChartQuadratic& quadratic) {
-    constexpr double kEnergyVariance = 1;  // U_k, which the paper does not give, of whitened residuals
+    constexpr double kEnergyVariance = 1;  // U_k for whitened residuals; the paper does not give it
     quadratic.information = quadratic.gradient * quadratic.gradient.transpose() / kEnergyVariance;
     quadratic.gradient *= energy / kEnergyVariance;
   }
@@ -164,7 +164,7 @@ class Update {
       result.converged =
           is_small(pose_minus(now.poses.T_world_imu_by_reference, before.T_world_imu_by_reference)) &&
           is_small(pose_minus(now.poses.T_world_imu_by_model, before.T_world_imu_by_model));
-      // The next stage linearises by itself where this one ends.
+      // The next stage linearises at this iterate.
       if (!last && (result.converged || iteration + 1 == budget)) break;
       quadratic = measurement_.linearise(now.poses, stage, last);
       gated = last;
@@ -177,12 +177,12 @@ class Update {
            tangent.tail<3>().norm() < config_.converged_translation_m;
   }
 
-  /// Both parts around the posterior: the one by reference was taken at another pose.
+  /// Transports both parts to the posterior; the part by reference was linearised at another pose.
   static PoseQuadratic at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     PoseQuadratic sum = quadratic.by_model;
     sum.add(quadratic.by_reference, 1.0);
-    const ReadoutVector left = now.readout - quadratic.undone;
+    const ReadoutVector left = now.readout - quadratic.compensated;
     TangentVector steps = TangentVector::Zero();
     steps.head<kPoseSize>() = step;
     sum.gradient += (quadratic.readout_by_reference.with_pose + quadratic.readout_by_model.with_pose) * left;
@@ -193,7 +193,7 @@ class Update {
     return sum;
   }
 
-  /// The difference to the optimum of the same cost without its part by model.
+  /// Difference to the optimum of the cost without the part by model.
   Vector6d correction_by_model(const Iterate& now, const MeasurementQuadratic& quadratic) const {
     const ChartQuadratic others = in_chart(quadratic, now, Parts::by_reference);
     const MeasuredMatrix system = MeasuredMatrix::Identity() + others.information * measured_covariance_;
@@ -208,7 +208,7 @@ class Update {
     const ReadoutQuadratic& by_model = quadratic.readout_by_model;
     const ReadoutVector gradient =
         by_reference.gradient + by_model.gradient + by_reference.with_pose.transpose() * step +
-        (by_reference.information + by_model.information) * (now.readout - quadratic.undone);
+        (by_reference.information + by_model.information) * (now.readout - quadratic.compensated);
     PoseTimingQuadratic result;
     result.timing_s = prior_.mean.sensors.timing_s() + now.readout.head<kTimingSize>();
     result.with_pose = (by_reference.with_pose + by_model.with_pose).leftCols<kTimingSize>();
@@ -218,8 +218,8 @@ class Update {
     return result;
   }
 
-  /// Gauss-Newton step with halving until the MAP cost falls. If it does not, none was needed where the step
-  /// is so small that rounding decides.
+  /// Gauss-Newton step, halved until the MAP cost decreases. not_needed: the cost does not decrease, but the
+  /// step is below the rounding error.
   enum class Step { taken, not_needed, not_found };
   Step step(Iterate& now, const MeasurementQuadratic& quadratic) {
     const ChartQuadratic local = in_chart(quadratic, now);
@@ -258,7 +258,8 @@ class Update {
     StateMatrix in_chart_at_prior = prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
     StateVector delta = now.delta;
     if (constants == SensorConstants::considered) {
-      // Their gain is zero: the other states, and how they correlate with them, are updated all the same.
+      // Considered constants have a gain of zero. Their correlations with the other states still take part in
+      // the update.
       delta.segment<kSensorSize>(kImuTimeOffset).setZero();
       in_chart_at_prior.block<kSensorSize, kSensorSize>(kImuTimeOffset, kImuTimeOffset) =
           prior_.covariance.block<kSensorSize, kSensorSize>(kImuTimeOffset, kImuTimeOffset);
@@ -283,7 +284,7 @@ double ReadoutQuadratic::cost(const ReadoutVector& errors, const Vector6d& step)
 }
 
 double MeasurementQuadratic::readout_cost(const ReadoutVector& errors, const TangentVector& steps) const {
-  const ReadoutVector left = errors - undone;
+  const ReadoutVector left = errors - compensated;
   return readout_by_reference.cost(left, steps.head<kPoseSize>()) +
          readout_by_model.cost(left, steps.tail<kPoseSize>());
 }
@@ -299,7 +300,7 @@ Vector6d correction_in_imu(const IekfResult& update) {
 }
 
 MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu) {
-  // The covariance is singular where the prior knows a direction; 0.1 mrad and 0.1 mm will do for a start.
+  // Tolerance for a singular covariance: 0.1 mrad and 0.1 mm are sufficient for a start.
   constexpr double kTolerance = 1e-8;
   const auto combinations = measured_combinations(prior.mean);
   const MeasuredMatrix covariance = combinations * prior.covariance * combinations.transpose();

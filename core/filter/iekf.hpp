@@ -1,12 +1,12 @@
 // The iterated extended Kalman update (Eqs. 15-23 of the paper) as Gauss-Newton on the MAP cost
 //
-//   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
+// J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
-// (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
-// every one (iekf.prior_in_every_iteration). A measurement depends on few linear combinations B d of the
-// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^28: the update
-// iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity along by
-// their correlations.
+// (Bell & Cathey 1993). The paper's Eq. 22 omits the prior term after the first iteration; here it is in
+// every iteration (iekf.prior_in_every_iteration). A measurement depends on the error state d only
+// through B d in R^28 (pose_clones.hpp). The optimum is therefore x_prior (+) P B^T y for some y in R^28. The
+// update iterates on y, never inverts P (which may be singular), and moves velocity, biases and gravity
+// through their correlations.
 #pragma once
 
 #include "core/config/groups/config_fwd.hpp"
@@ -15,8 +15,8 @@
 
 namespace fusebench::filter {
 
-/// Second-order model of a measurement's cost around a pose, in the tangent space of the pose there
-/// (right rotation in rad, then world position in m).
+/// Second-order model of the cost of a measurement around a pose, in the tangent of the pose (right rotation
+/// in rad, then world position in m).
 struct PoseQuadratic {
   Matrix6d information = Matrix6d::Zero();  ///< H^T R^-1 H
   Vector6d gradient = Vector6d::Zero();     ///< H^T R^-1 r
@@ -29,8 +29,8 @@ struct PoseQuadratic {
   }
 };
 
-/// The pose of the IMU if the reference frame (by_reference) or the model (by_model) is kept at its prior
-/// pose. The two differ by the corrections of these during the update.
+/// The pose of the IMU relative to the reference frame (by_reference) and to the model (by_model), each of
+/// these fixed at its prior pose. The two differ by the corrections of reference and model in the update.
 struct PoseHypothesis {
   SE3 T_world_imu_by_reference;
   SE3 T_world_imu_by_model;
@@ -39,13 +39,18 @@ struct PoseHypothesis {
 /// Tangents of the two poses of a hypothesis: by reference, then by model.
 using TangentVector = Eigen::Matrix<double, 2 * kPoseSize, 1>;
 
-/// Errors of the timing (read-out of colour, read-out of depth, delay of depth; s), then the number 0, and
-/// errors of the pose's rate (as pose_rate()), against that of the reference and of the model. A measurement
-/// that has a known displacement counts it in the column of the 0, and says -1 in `undone` there.
+/// Read-out errors e in R^16, relative to the prior:
+///
+/// e = (dt_color, dt_depth, dt_delay, 0, v_reference, v_model)
+///
+/// dt: errors of the colour read-out, the depth read-out and the depth delay (s). v (6 entries each): rate of
+/// the pose as pose_rate(), minus the rate of the reference and of the model. Entry 3 is the affine term:
+/// with compensated[3] = -1, (e - compensated)[3] = 1, so column 3 of a Jacobian is a displacement that does
+/// not depend on e.
 using ReadoutVector = Eigen::Matrix<double, kReadoutSize, 1>;
 
-/// How the cost of a measurement depends on these, around none: by the information that it shares with the
-/// pose, and by its own.
+/// Quadratic model of the cost in the read-out errors e around 0: the information shared with the pose, and
+/// that of e itself.
 struct ReadoutQuadratic {
   Eigen::Matrix<double, kPoseSize, kReadoutSize> with_pose =
       Eigen::Matrix<double, kPoseSize, kReadoutSize>::Zero();
@@ -53,31 +58,32 @@ struct ReadoutQuadratic {
       Eigen::Matrix<double, kReadoutSize, kReadoutSize>::Zero();
   ReadoutVector gradient = ReadoutVector::Zero();
 
-  /// What the errors add to the cost if the pose has moved on by a step.
+  /// Cost that the errors add if the pose has moved by `step`.
   [[nodiscard]] double cost(const ReadoutVector& errors, const Vector6d& step) const;
 };
 
-/// The cost of a measurement, in the tangents of the two poses of a hypothesis and in errors of the read-out.
-/// The poses' parts are those without such errors.
+/// Quadratic model of the cost of a measurement in the tangents of both poses and in the read-out errors. The
+/// pose parts are those for e = 0.
 struct MeasurementQuadratic {
   PoseQuadratic by_reference;
   PoseQuadratic by_model;
   ReadoutQuadratic readout_by_reference = {};
   ReadoutQuadratic readout_by_model = {};
-  /// What the images were prepared for already, counted from the prior.
-  ReadoutVector undone = ReadoutVector::Zero();
+  /// Read-out errors for which the images are already compensated, relative to the prior.
+  ReadoutVector compensated = ReadoutVector::Zero();
 
-  /// errors: counted from the prior. steps: that the poses have moved on by since the linearisation.
+  /// errors: relative to the prior. steps: motion of both poses since the linearisation.
   [[nodiscard]] double readout_cost(const ReadoutVector& errors, const TangentVector& steps) const;
   [[nodiscard]] double cost(const ReadoutVector& errors = ReadoutVector::Zero()) const;
 };
 
-/// How the cost depends on the timing around a pose and a timing, in addition to a PoseQuadratic there: for
-/// estimators that put a pose and a timing of their own in.
+/// Quadratic model of the cost in the timing around a pose and a timing, in addition to a PoseQuadratic
+/// there. For estimators that have their own pose and timing.
 struct PoseTimingQuadratic {
-  Vector3d timing_s = Vector3d::Zero();  ///< around which: as SensorErrors count it
+  Vector3d timing_s = Vector3d::Zero();  ///< point of linearisation, as SensorErrors::timing_s()
+  /// Information shared with the tangent of the pose.
   Eigen::Matrix<double, kPoseSize, kTimingSize> with_pose =
-      Eigen::Matrix<double, kPoseSize, kTimingSize>::Zero();  ///< information shared with the pose's tangent
+      Eigen::Matrix<double, kPoseSize, kTimingSize>::Zero();
   Matrix3d information = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
 };
@@ -85,8 +91,8 @@ struct PoseTimingQuadratic {
 using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
 using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
 
-/// Interface of a measurement to the update. Nuisance parameters (brightness of patches) are internal to the
-/// measurement: it eliminates them in linearise() and moves them along in trial_cost() and accept().
+/// A measurement of the update. Nuisance parameters (brightness of patches) are internal: linearise()
+/// eliminates them, trial_cost() and accept() update them.
 class PoseMeasurement {
  public:
   PoseMeasurement() = default;
@@ -96,24 +102,24 @@ class PoseMeasurement {
 
   /// Number of resolutions, coarse to fine; the last one is full resolution.
   [[nodiscard]] virtual int stages() const { return 1; }
-  /// Fixes associations, visibility and robust weights at the pose (those of an earlier linearisation may
-  /// do). `gate`: reject what is inconsistent.
+  /// Fixes associations, visibility and robust weights at the pose; those of an earlier linearisation may be
+  /// reused. gate: reject inconsistent patches.
   [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
-  /// Cost at other poses with associations and weights of the last linearise(), without a timing error;
-  /// `step` is the full tangent step from there, of which `fraction` was taken.
+  /// Cost at other poses with the associations and weights of the last linearise(), for zero timing errors.
+  /// `step`: the full tangent step from there; `fraction`: the part of it that was taken.
   [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const TangentVector& step,
                                           double fraction) = 0;
-  /// The last trial becomes the current estimate.
+  /// Makes the last trial the current estimate.
   virtual void accept() = 0;
 };
 
 struct IekfResult {
   GaussianState posterior;
   MeasuredVector solution = MeasuredVector::Zero();  ///< y of the last iterate
-  PoseQuadratic measurement;   ///< the last linearisation, at the posterior, without the prior
-  PoseTimingQuadratic timing;  ///< the same, around the timing of the last iterate
-  /// How the measurement by the model moved the pose, which without it would be elsewhere: tangent of
-  /// T_world_imu (rotation in rad, world position in m).
+  PoseQuadratic measurement;   ///< last linearisation, at the posterior, without the prior
+  PoseTimingQuadratic timing;  ///< as `measurement`, around the timing of the last iterate
+  /// Motion of the pose caused by the measurement by the model: tangent of T_world_imu (rotation in rad,
+  /// world position in m).
   Vector6d correction_by_model = Vector6d::Zero();
   int iterations = 0;         ///< accepted steps over all stages
   bool converged = false;     ///< the last step was below both thresholds
@@ -121,23 +127,23 @@ struct IekfResult {
   double map_cost_posterior = 0;
 };
 
-/// Its correction_by_model with the translation along the axes of the IMU.
+/// correction_by_model with the translation along the axes of the IMU.
 [[nodiscard]] Vector6d correction_in_imu(const IekfResult& update);
 
-/// The start of an update at another pose than the prediction's: the y that brings both poses of the
-/// hypothesis to T_world_imu, as far as the prior's covariance lets them.
+/// The y that moves both poses of the hypothesis to T_world_imu, as far as the covariance of the prior
+/// permits. Starts an update at a pose other than the prediction.
 [[nodiscard]] MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu);
 
-/// What an update does with the constants of the sensors (kImuTimeOffset to kDepthDelay).
+/// Treatment of the sensor constants (kImuTimeOffset to kDepthDelay) in an update.
 enum class SensorConstants {
   estimated,
-  /// Their uncertainty counts and they stay as they are (Schmidt 1966): before there was motion, what seems
-  /// to be measured of them is mostly the error of something else.
+  /// The values stay fixed, and their uncertainty counts (Schmidt 1966). Used before there is motion, when
+  /// their apparent errors are mostly errors of other states.
   considered,
 };
 
 /// Runs the update. The covariance is updated once, after the last iteration (Eq. 23 in its symmetric form),
-/// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
+/// and transported to the tangent space at the posterior. `start`: y of the first iterate (zero: the
 /// prediction).
 [[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
                                      const config::IekfConfig& config,

@@ -4,7 +4,7 @@ namespace fusebench::filter {
 
 namespace {
 
-/// A tangent of the pose: rotation in the axes of the IMU, position in those of the world.
+/// Rotates a tangent of the pose: only the position part is in world axes.
 Vector6d turned(const Quaterniond& R_new_old, const Vector6d& tangent) {
   Vector6d result = tangent;
   result.tail<3>() = R_new_old * tangent.tail<3>();

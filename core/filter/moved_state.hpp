@@ -1,15 +1,15 @@
-// The filter in another world: what a correction of all poses does to it.
+// Transforms the state of the filter to another world frame, after a correction of all poses.
 #pragma once
 
 #include "core/filter/filter_state.hpp"
 
 namespace fusebench::filter {
 
-/// The same state seen from another world, T_new_old: poses, velocity, gravity and what is expressed in the
-/// axes of the world move; nothing else does.
+/// The state in the new world frame, x_new = T_new_old * x_old: poses, velocity, gravity and the IMU axes are
+/// transformed; everything else is unchanged.
 [[nodiscard]] FilterState moved(const FilterState& state, const SE3& T_new_old);
 
-/// With its covariance, whose tangent turns with the world.
+/// As moved(FilterState); the covariance is rotated to the new frame.
 [[nodiscard]] GaussianState moved(const GaussianState& state, const SE3& T_new_old);
 
 }  // namespace fusebench::filter

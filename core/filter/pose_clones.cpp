@@ -7,13 +7,13 @@ namespace fusebench::filter {
 
 namespace {
 
-/// Jacobian of the error state by a rigid displacement of the reference frame, given as a pose error at the
-/// pose: quantities expressed in the displaced frame move the other way.
+/// Jacobian of the error state with respect to a rigid displacement of the reference frame, given as a pose
+/// error at the pose. Quantities expressed in the displaced frame move in the opposite direction.
 Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& state) {
   Eigen::Matrix<double, kStateSize, kPoseSize> moves = Eigen::Matrix<double, kStateSize, kPoseSize>::Zero();
   const Matrix3d R = state.T_world_imu.rotation_matrix();
   moves.topRows<kPoseSize>().setIdentity();
-  // A rotation error phi of the body is R phi of the world.
+  // A rotation error phi of the body is R phi in the world frame.
   moves.block<3, 3>(kVelocity, 0) = -hat(state.velocity_world_mps) * R;
   moves.block<2, 3>(kGravity, 0) = s2_basis(state.gravity_direction_world).transpose() * R;
   moves.middleRows<kPoseSize>(kReferencePose) =
@@ -22,7 +22,7 @@ Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& sta
   return moves;
 }
 
-/// Six rows, from `row` on, that take over a share of the errors of pose_rate().
+/// Sets six rows, from `row` on, to a share of the errors of pose_rate().
 void take_rate(auto& rows, int row, double share) {
   rows.template block<3, 3>(row, kAngularVelocity).diagonal().setConstant(share);
   rows.template block<3, 3>(row + 3, kVelocity).diagonal().setConstant(share);
@@ -32,8 +32,8 @@ GaussianState transformed(const GaussianState& state, const StateMatrix& by) {
   return {state.mean, symmetrised(by * state.covariance * by.transpose())};
 }
 
-/// Both at the pose of the frame.
-FusedReadout fused(const FusedReadout& model, const UndoneReadout& frame, double share) {
+/// Both arguments are given at the pose of the frame.
+FusedReadout fused(const FusedReadout& model, const CompensatedReadout& frame, double share) {
   const auto mixed = [&](const Vector6d& before, const Vector6d& now) -> Vector6d {
     return (1 - share) * before + share * now;
   };
@@ -73,7 +73,7 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
 }
 
 GaussianState fused_into_model(const GaussianState& state, const ModelDrift& drift,
-                               const UndoneReadout& undone) {
+                               const CompensatedReadout& compensated) {
   const Matrix6d to_reference = pose_transport(state.mean.T_world_imu_reference, state.mean.T_world_imu);
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
@@ -84,20 +84,20 @@ GaussianState fused_into_model(const GaussianState& state, const ModelDrift& dri
   to_model.block<kPoseSize, kPoseSize>(kModelRate, kModelRate).diagonal().setConstant(1 - drift.share);
 
   GaussianState result = transformed(state, to_model);
-  // The drift of the model beyond that of independent errors is no error of this pose.
+  // Drift of the model above that of independent errors is not an error of this pose.
   const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
   result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
       excess * to_reference * state.covariance.topLeftCorner<kPoseSize, kPoseSize>() *
       to_reference.transpose();
   result.mean.model_rate_offset =
-      (1 - drift.share) * state.mean.model_rate_offset + drift.share * to_reference * undone.rate_left;
-  UndoneReadout at_reference = undone;
-  at_reference.rate = to_reference * undone.rate;
+      (1 - drift.share) * state.mean.model_rate_offset + drift.share * to_reference * compensated.rate_left;
+  CompensatedReadout at_reference = compensated;
+  at_reference.rate = to_reference * compensated.rate;
   result.mean.model_readout = fused(state.mean.model_readout, at_reference, drift.share);
   return result;
 }
 
-GaussianState cloned_as_reference(const GaussianState& state, const UndoneReadout& undone) {
+GaussianState cloned_as_reference(const GaussianState& state, const CompensatedReadout& compensated) {
   const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
   StateMatrix clone = StateMatrix::Identity();
   clone.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
@@ -114,8 +114,8 @@ GaussianState cloned_as_reference(const GaussianState& state, const UndoneReadou
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
-  result.mean.reference_rate_offset = undone.rate_left;
-  result.mean.reference_color_readout_s = undone.timing_s[0];
+  result.mean.reference_rate_offset = compensated.rate_left;
+  result.mean.reference_color_readout_s = compensated.timing_s[0];
   return result;
 }
 

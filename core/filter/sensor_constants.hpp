@@ -1,4 +1,4 @@
-// The constants of the sensors, one by one, as outputs name them.
+// The sensor constants as scalars with their names in outputs.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace fusebench::filter {
 
-/// A scalar of the state that does not change during a recording.
+/// A scalar of the state that is constant during a recording.
 struct SensorConstant {
-  std::string name;  ///< with its unit, as "color_readout_s"
+  std::string name;  ///< with its unit, for example "color_readout_s"
   double value = 0;
-  double sigma = 0;  ///< standard deviation; 0: held
+  double sigma = 0;  ///< standard deviation; 0: fixed
 };
 
-/// From kImuTimeOffset on, in the order of the error state. Times are the whole ones: what the rig says, and
-/// the error that was found.
+/// The constants from kImuTimeOffset on, in the order of the error state. Times are totals: value of the rig
+/// plus estimated error.
 [[nodiscard]] std::vector<SensorConstant> sensor_constants(const GaussianState& state,
                                                            const SensorTiming& timing);
 

@@ -1,4 +1,4 @@
-// Time-stamped states: estimated, or of a reference.
+// Time-stamped states, estimated or of a reference.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace fusebench::filter {
 
-/// A state that is known exactly. Of a reference, world is the reference's own (as in a ground truth), and
-/// the direction of gravity, the body rate and the clocks' offset are not given.
+/// A state without uncertainty. For a reference, the world frame is that of the reference, and gravity
+/// direction, body rate and clock offset are not given.
 struct StampedState {
   std::int64_t timestamp_ns = 0;
   FilterState state;
 };
 
-/// Rotation, position, velocity and biases lead the error state.
+/// Rotation, position, velocity and biases: the first entries of the error state.
 inline constexpr int kNavigationSize = kGravity;
 
-/// What a filter estimated at an instant, with the covariance of the navigation state alone: of the whole
-/// state it is ten times as large, and a recording has tens of thousands of them.
+/// State of the filter at an instant, with the covariance of the navigation state only. The full covariance
+/// is ten times as large, and a recording has tens of thousands of states.
 struct StampedEstimate {
   std::int64_t timestamp_ns = 0;
   FilterState mean;

@@ -6,7 +6,7 @@ namespace fusebench::filter {
 
 namespace {
 
-/// False for NaN as well.
+/// False for NaN too.
 bool within(const auto& values, double largest) { return (values.array().abs() <= largest).all(); }
 
 bool is_valid(const SensorErrors& errors) {

@@ -16,7 +16,7 @@ double mean_grey(const GreyImage& image) {
   return static_cast<double>(sum) / static_cast<double>(image.data.size());
 }
 
-/// Share of pixels with a gradient; a coarse level has little noise.
+/// Share of pixels with a gradient, on a coarse level with little noise.
 double texture_share(const GreyImage& image, int gradient_grey) {
   std::size_t textured = 0;
   for (int y = 0; y + 1 < image.height; ++y) {

@@ -1,4 +1,4 @@
-// How long the stages of a frame took, and when each of them was at work.
+// Durations and time spans of the stages of a frame.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace fusebench::health {
 
-/// Stages whose time is reported.
+/// Stages with reported times.
 enum class Stage { preprocess, predict, update, fuse, refresh };
 inline constexpr std::array<std::string_view, 5> kStageNames = {"preprocess", "predict", "update", "fuse",
                                                                 "refresh"};
 
-/// By the clock of the process: only differences mean something.
+/// Steady clock: only differences are meaningful.
 struct TimeSpan {
   std::chrono::steady_clock::time_point begin;
   std::chrono::steady_clock::time_point end;
@@ -24,18 +24,18 @@ struct TimeSpan {
   }
 };
 
-/// One stretch of work of a stage.
+/// One time span of a stage.
 struct StageSpan {
   Stage stage = Stage::preprocess;
   TimeSpan time;
 };
 
-/// The stretches of one frame's work, which never overlap, in order. A stage may have several. Of fixed size,
-/// so that no frame allocates anything for it.
+/// The time spans of one frame, in order and without overlap. A stage may have several. Fixed size, so no
+/// frame allocates memory.
 class StageTimes {
  public:
-  /// A frame that is found again has ten, and the second frame of a recording, with which the first one may
-  /// be done again, three times as many. What has no room is in the sums alone.
+  /// A relocalised frame has ten spans; the second frame of a recording, after which the first may be
+  /// processed again, three times as many. Further spans count in the sums only.
   static constexpr std::size_t kMostSpans = 32;
 
   void add(const StageSpan& span) {
@@ -43,7 +43,7 @@ class StageTimes {
     if (count_ < kMostSpans) spans_[count_++] = span;
   }
 
-  /// Those of work on the same frame that came after.
+  /// Appends the spans of later work on the same frame.
   void add(const StageTimes& later) {
     for (const StageSpan& span : later.spans()) {
       if (count_ < kMostSpans) spans_[count_++] = span;
@@ -53,7 +53,7 @@ class StageTimes {
 
   [[nodiscard]] std::span<const StageSpan> spans() const { return {spans_.data(), count_}; }
 
-  /// Milliseconds by stage; 0 of a stage that the frame did without.
+  /// Milliseconds by stage; 0 for a stage that did not run.
   [[nodiscard]] const std::array<double, kStageNames.size()>& sums_ms() const { return sums_ms_; }
 
  private:
@@ -62,7 +62,7 @@ class StageTimes {
   std::array<double, kStageNames.size()> sums_ms_{};
 };
 
-/// Adds the time since its construction to one stage.
+/// Adds its own lifetime to one stage.
 class StageClock {
  public:
   StageClock(StageTimes& times, Stage stage)

@@ -15,8 +15,8 @@ namespace fusebench::loops {
 
 namespace {
 
-// The first pose of a tracker that finds itself was off by 1 to 28 mrad and 0.2 to 3.0 cm in rooms that are
-// simulated, where its pair of places could not be verified.
+// Error of the first pose after a relocalisation whose pair of places could not be verified: 1 to 28 mrad and
+// 0.2 to 3.0 cm in simulated rooms.
 constexpr double kFoundRotationSigma_rad = 0.02;
 constexpr double kFoundPositionSigma_m = 0.03;
 
@@ -85,7 +85,7 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   look_for_loops(places_.size() - 1);
 }
 
-/// Of the camera's pose, in its tangent, in the world of the first camera.
+/// Covariance of the camera pose, in its tangent, in the first camera frame.
 Matrix6d LoopClosure::camera_covariance(const filter::GaussianState& in_odometry) const {
   const SE3 T_world_camera = in_odometry.mean.T_world_imu * rig_.T_imu_camera;
   const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
@@ -115,8 +115,8 @@ void LoopClosure::add_relocalisation(const filter::GaussianState& predicted,
   odometry_.relocalise(again, T_current_camera_found, last);
 }
 
-/// As exact as the pair of places is verified. Where it is not, as the tracker says, whose first pose after a
-/// loss starts from a motion that is not known.
+/// Uses the pose of the verified pair of places. Without one, uses the self-relocalisation pose, whose first
+/// motion after the loss is unknown.
 void LoopClosure::add_relocalisation_edge(std::size_t query) {
   const Relocalisation& found = odometry_.relocalisation(odometry_.relocalisations());
   LoopCandidate candidate;
@@ -139,7 +139,7 @@ void LoopClosure::add_relocalisation_edge(std::size_t query) {
   candidates_.push_back(std::move(candidate));
 }
 
-/// The last place among the candidates, until one is verified.
+/// Verifies the candidates; the last place is a candidate until one of them is verified.
 void LoopClosure::look_for_loops(std::size_t query) {
   const auto T_world_camera = [&](std::size_t place) { return T_current_camera(place); };
   std::vector<std::size_t> known_places = similar_places(places_, config_.loops);
@@ -163,8 +163,8 @@ void LoopClosure::look_for_loops(std::size_t query) {
   }
 }
 
-/// Whether the pair was looked at already: a lost tracker that found itself by that place. Those of the query
-/// are the last ones.
+/// True if the pair is already a candidate, by a self-relocalisation to that place. The candidates of the
+/// query are the last ones.
 bool LoopClosure::is_candidate(std::size_t known, std::size_t query) const {
   for (auto candidate = candidates_.rbegin(); candidate != candidates_.rend() && candidate->query == query;
        ++candidate) {
@@ -173,12 +173,12 @@ bool LoopClosure::is_candidate(std::size_t known, std::size_t query) const {
   return false;
 }
 
-/// Edges that do not fit the others go.
+/// Removes edges that are inconsistent with the others.
 Result<void> LoopClosure::optimise() {
   optimised_.clear();
   PoseGraph graph;
-  // The errors of gravity (bias and scale of the accelerometer, its rotation against the camera) are common
-  // to all places: together they tell as much as one.
+  // The errors of gravity (bias, scale and rotation of the accelerometer) are common to all places, so all
+  // places together have the weight of one.
   graph.gravity_sigma_rad =
       radians(config_.loops.gravity_sigma_deg) * std::sqrt(static_cast<double>(places_.size()));
   for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -210,13 +210,13 @@ Result<void> LoopClosure::optimise() {
   return {};
 }
 
-/// In the world of the estimate.
+/// Pose in the current frame.
 SE3 LoopClosure::T_current_camera(std::size_t place) const {
   if (place < optimised_.size()) return optimised_[place];
   return odometry_.T_current_camera(places_[place].T_world_camera, places_[place].relocalisations);
 }
 
-/// By more than it may be off itself.
+/// True if the difference exceeds the uncertainty of the candidate.
 bool LoopClosure::contradicts_current_poses(const LoopCandidate& candidate) const {
   const GraphEdge edge = loop_edge(places_, candidate, config_.loops);
   const SE3 T_known_query = T_current_camera(candidate.known).inverse() * T_current_camera(candidate.query);
@@ -264,7 +264,7 @@ Result<bool> LoopClosure::close() {
   return !optimised_.empty() || corrections_ > 0;
 }
 
-/// The last one that is not later, or the first one.
+/// Index of the last place that is not later; 0 if all are later.
 std::size_t LoopClosure::place_before(std::int64_t timestamp_ns) const {
   const auto after = std::ranges::upper_bound(places_, timestamp_ns, {}, &Place::timestamp_ns);
   return after == places_.begin() ? 0 : static_cast<std::size_t>(after - places_.begin()) - 1;
@@ -278,7 +278,8 @@ std::size_t LoopClosure::place_near(std::int64_t timestamp_ns) const {
   return before + 1 < places_.size() && apart_ns(before + 1) < apart_ns(before) ? before + 1 : before;
 }
 
-/// Whether the first place after a relocalisation is where the tracker said; true if there is none.
+/// True if the first place after a relocalisation agrees with the self-relocalisation; true if there is no
+/// such place.
 bool LoopClosure::is_accepted(std::size_t relocalisation) const {
   const auto next = std::ranges::lower_bound(places_, relocalisation, {}, &Place::relocalisations);
   const auto query = static_cast<std::size_t>(next - places_.begin());
@@ -288,8 +289,8 @@ bool LoopClosure::is_accepted(std::size_t relocalisation) const {
   return edge == candidates_.end() || edge->accepted;
 }
 
-/// Moved with the places before and after it; where nothing was optimised, as the tracker found itself. A
-/// frame that was found and not fused moves with the place that it was found by.
+/// Moves a pose with the places before and after it. Without optimised places, returns the relocalised pose.
+/// A relocalised frame that was not fused moves with its matched place.
 SE3 LoopClosure::corrected(const PosedFrame& frame) const {
   const auto& [timestamp_ns, T_odometry_camera, relocalisations] = frame;
   if (optimised_.empty()) return odometry_.T_relocalised_camera(T_odometry_camera, relocalisations);

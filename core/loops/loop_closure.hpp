@@ -1,16 +1,16 @@
-// Loops: places that are seen again, and all poses of a recording made consistent with them at its end. The
-// paper leaves this open ("has not achieved loop closure with fast camera motion").
+// Loop closure: recognises places and makes all poses of a recording consistent with them. The paper leaves
+// this open ("has not achieved loop closure with fast camera motion").
 //
-// Fused frames become places every few frames. Each is compared with the older ones by what it looks like,
-// and by where the path leads (place_search.hpp); the most similar and the nearest are verified by
-// features and by depth in both directions (core/places). Which edges are accepted is in loop_edges.hpp. The
-// graph of places is optimised at the end, or online as well when a loop shows that the poses are wrong
-// (pose_graph.hpp); between places, poses move with their neighbours.
+// Every few fused frames, one becomes a place. It is compared with the older places by appearance and by
+// position (place_search.hpp). The most similar and the nearest ones are verified by features and by depth in
+// both directions (core/places). loop_edges.hpp decides which edges are accepted. The pose graph is optimised
+// at the end, or online when a loop contradicts the poses (pose_graph.hpp). Other poses move with their
+// neighbouring places.
 //
-// All of this works in the world of the odometry (odometry_world.hpp). A lost tracker that finds itself by a
-// place has closed a loop: the place becomes an edge.
+// All computations are in the odometry frame (odometry_world.hpp). A self-relocalisation to a place becomes
+// an edge.
 //
-// The same frames give the same bytes, whatever the number of threads.
+// Results do not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@
 
 namespace fusebench::loops {
 
-/// What is needed to fuse a frame again; in the world of the odometry.
+/// Data to fuse a frame again, in the odometry frame.
 struct FusedFrame {
   std::int64_t timestamp_ns = 0;
   filter::FilterState state;
@@ -42,50 +42,51 @@ class LoopClosure {
 
   [[nodiscard]] bool enabled() const;
 
-  /// A frame that was fused (compensated, gated, with colour), with the estimate that it was fused at.
+  /// Adds a fused frame (compensated, gated, with colour) and the estimate at which it was fused.
   void add_fused(const RgbdFrame& frame, const filter::GaussianState& estimate, double blur_px);
-  /// A lost tracker was predicted to be there, and has found itself by the fused frame of that stamp; before
-  /// the calls for that frame.
+  /// Adds a self-relocalisation: the pose predicted for the lost tracker and the pose found with the fused
+  /// frame of that stamp. Call it before the other calls for that frame.
   void add_relocalisation(const filter::GaussianState& predicted, const filter::GaussianState& found,
                           std::int64_t found_by_ns);
-  /// The pose of a frame that has one, fused or not.
+  /// Adds the pose of a frame, fused or not.
   void add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera);
 
-  /// With mode online, as long as there is a correction left.
+  /// In mode online: true while corrections are left.
   [[nodiscard]] bool may_correct_online() const;
-  /// With mode online, after the last calls of these two: how the world of the estimate moves
-  /// (T_corrected_current), if the frame showed that the poses are wrong. All that is in it, estimate, model
-  /// and keyframes, then has to move. Errors: those of optimised_poses().
+  /// In mode online, after add_fused() and add_pose(): the transform T_corrected_current, if the last frame
+  /// contradicts the poses. Estimate, model and keyframes must be moved by it. Errors: those of
+  /// optimised_poses().
   [[nodiscard]] Result<std::optional<SE3>> correct_online();
 
-  /// Decides which loops are accepted, after the last frame, and with mode final or online optimises. True if
-  /// poses change. Errors: those of optimised_poses().
+  /// Decides, after the last frame, which loops are accepted. In modes final and online, optimises. True if
+  /// poses changed. Errors: those of optimised_poses().
   [[nodiscard]] Result<bool> close();
 
   // After close() or a correction:
-  /// Of the frames given to add_pose().
+  /// Poses of the frames given to add_pose().
   [[nodiscard]] Trajectory corrected_trajectory() const;
-  /// The state that the frame of that stamp was fused at, corrected; nothing if it was not fused.
+  /// Corrected state at which the frame of that stamp was fused; nothing if it was not fused.
   [[nodiscard]] std::optional<filter::FilterState> corrected_state(std::int64_t timestamp_ns) const;
-  /// Of the camera, at the fused frame that is nearest in time; there has to be one.
+  /// Corrected camera pose at the fused frame that is nearest in time. Requires at least one fused frame.
   [[nodiscard]] SE3 corrected_pose_near(std::int64_t timestamp_ns) const;
 
-  /// The poses at the end with these loops (pair.same, all accepted) in place of those that were found: with
-  /// true ones it tells how much is left to be found. Errors: those of optimised_poses().
+  /// Final poses with the given loops (pair.same, all accepted) instead of the detected ones. With
+  /// ground-truth loops this gives the error that remains. Errors: those of optimised_poses().
   [[nodiscard]] Result<Trajectory> poses_with(std::vector<LoopCandidate> loops) const;
 
   [[nodiscard]] int online_corrections() const { return corrections_; }
   [[nodiscard]] std::span<const Place> places() const { return places_; }
   [[nodiscard]] std::span<const LoopCandidate> candidates() const { return candidates_; }
-  /// Of a verified pair's pose: rotation on the right (rad), position in the frame of the known place (m).
+  /// Covariance of the pose of a verified pair: rotation on the right (rad), position in the frame of the
+  /// known place (m).
   [[nodiscard]] Matrix6d covariance_of(const LoopCandidate& candidate) const;
 
  private:
-  /// A frame that has a pose.
+  /// A frame with a pose.
   struct PosedFrame {
     std::int64_t timestamp_ns = 0;
     SE3 T_odometry_camera;
-    std::size_t relocalisations = 0;  ///< before it, its own included
+    std::size_t relocalisations = 0;  ///< number of relocalisations up to and including this frame
   };
   [[nodiscard]] bool was_found_since_last_place() const {
     return !places_.empty() && places_.back().relocalisations < odometry_.relocalisations();
@@ -112,7 +113,7 @@ class LoopClosure {
   std::vector<PosedFrame> poses_;
   OdometryWorld odometry_;
   int fused_since_place_ = 0;
-  bool poses_are_wrong_ = false;  ///< a loop of the last place says so
+  bool poses_are_wrong_ = false;  ///< a loop of the last place contradicts the poses
   std::size_t fused_at_attempt_ = 0;
   int corrections_ = 0;
 };

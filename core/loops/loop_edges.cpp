@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kContradicts = "contradicts the poses, whatever supports it";
 
-/// How the edge moves with the instants of its two places, in its tangent (by second).
+/// Derivative of the edge's tangent by the instants of its two places (per second).
 std::array<Vector6d, 2> motion_of_edge(const Place& known, const Place& query, const SE3& T_known_query) {
   std::array<Vector6d, 2> motion;
   motion[0] << T_known_query.rotation.conjugate() * known.angular_velocity_camera_radps,
@@ -32,7 +32,7 @@ double chi2_of(std::span<const Place> places, const LoopCandidate& candidate,
   return error.dot(both.covariance.ldlt().solve(error));
 }
 
-/// By way of the motion between their places, which are near in time.
+/// True if two candidates agree, given the motion between their places, which are close in time.
 bool agree(std::span<const Place> places, const LoopCandidate& a, const LoopCandidate& b,
            const config::LoopsConfig& config) {
   const double apart_s =
@@ -83,7 +83,7 @@ Matrix6d not_negative(const Matrix6d& covariance) {
          eigen.eigenvectors().transpose();
 }
 
-/// The filter claims too little of the drift of tracking, and not of dead reckoning.
+/// Inflates the drift of tracking, which the filter underestimates; that of dead reckoning is realistic.
 GraphEdge path_edge(std::span<const Place> places, std::size_t a, std::size_t b,
                     const config::LoopsConfig& config) {
   const Place& from = places[a];
@@ -101,7 +101,7 @@ GraphEdge path_edge(std::span<const Place> places, std::size_t a, std::size_t b,
   return edge;
 }
 
-/// The images of a place are of instants that are known only so well: an error along its motion.
+/// The instants of a place's images are uncertain, which gives an error along its motion.
 GraphEdge loop_edge(std::span<const Place> places, const LoopCandidate& candidate,
                     const config::LoopsConfig& config) {
   GraphEdge edge{candidate.known, candidate.query, candidate.pair.T_known_query, candidate.pair.covariance,

@@ -1,7 +1,6 @@
-// What the filter and the verified pairs say of the motion between places, and which loops are accepted:
-// those that agree with the poses so far within their drift, or with another verified loop near to them in
-// time, and those by which a lost tracker found itself.
-// Appearance alone moves nothing.
+// Edges of the pose graph and their acceptance. A loop is accepted if it agrees with the current poses within
+// their drift, if it agrees with another verified loop close in time, or if it is a self-relocalisation.
+// Appearance alone is not sufficient.
 #pragma once
 
 #include <cstddef>
@@ -18,22 +17,22 @@ namespace fusebench::loops {
 
 inline constexpr std::string_view kFoundItself = "the lost tracker found itself by it";
 
-/// Independent errors of equal size along each axis.
+/// Diagonal covariance with equal errors along all axes.
 [[nodiscard]] Matrix6d covariance_by_axis(double rotation_sigma_rad, double position_sigma_m);
 
-/// The covariance without what is negative in it.
+/// The nearest positive semi-definite covariance: negative eigenvalues set to 0.
 [[nodiscard]] Matrix6d not_negative(const Matrix6d& covariance);
 
-/// What the filter says of the motion from place a to the later place b, with the drift that came on in
-/// between.
+/// Edge from place a to the later place b by the estimates of the filter, with the drift between them.
 [[nodiscard]] GraphEdge path_edge(std::span<const Place> places, std::size_t a, std::size_t b,
                                   const config::LoopsConfig& config);
 
-/// Of a verified pair.
+/// Edge of a verified pair.
 [[nodiscard]] GraphEdge loop_edge(std::span<const Place> places, const LoopCandidate& candidate,
                                   const config::LoopsConfig& config);
 
-/// Of each verified candidate: how far it is from the poses so far (chi2), whether it is accepted, and why.
+/// Sets, for each verified candidate, its squared distance to the current poses (chi2), whether it is
+/// accepted, and the reason.
 void decide(std::span<const Place> places, const config::LoopsConfig& config,
             std::vector<LoopCandidate>& candidates);
 

@@ -8,7 +8,7 @@ namespace fusebench::loops {
 
 void OdometryWorld::relocalise(const Relocalisation& found, const SE3& T_current_camera,
                                const OdometryPose& last) {
-  // The current world moves under the odometry, which goes on as predicted.
+  // Moves the current frame relative to the odometry frame, which continues as predicted.
   const SE3 T_corrected_relocalised = T_current_odometry_ * T_relocalised_odometry_.back().inverse();
   T_current_odometry_ = T_current_camera * found.T_odometry_camera.inverse();
   T_relocalised_odometry_.push_back(T_corrected_relocalised.inverse() * T_current_odometry_);

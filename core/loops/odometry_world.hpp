@@ -1,7 +1,7 @@
-// Two worlds. That of the odometry is as if nothing was ever corrected: a lost tracker that finds itself by a
-// place goes on in it as the IMU carried it, since what the prediction was off by came on along the whole
-// path since that place, and not where the tracker was lost. The estimate is in the current one, which moves
-// with each relocalisation and with each correction.
+// Odometry frame and current frame (REP-105: odom and map). In the odometry frame poses are never corrected:
+// a self-relocalised tracker continues in it at the pose predicted by the IMU, since the prediction error
+// accumulated along the whole path and not only during the loss. The estimate is in the current frame, which
+// moves with each relocalisation and each correction.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@
 
 namespace fusebench::loops {
 
-/// A lost tracker found itself by a place.
+/// A self-relocalisation to a place.
 struct Relocalisation {
-  std::size_t known = 0;  ///< the place, by index
+  std::size_t known = 0;  ///< index of the matched place
   SE3 T_known_camera;
-  SE3 T_odometry_camera;  ///< as predicted
-  /// Of the camera's pose in the world of the first camera, in its tangent.
+  SE3 T_odometry_camera;  ///< predicted pose
+  /// Covariances of the camera pose in the first camera frame, in its tangent.
   Matrix6d predicted_covariance = Matrix6d::Zero();
   Matrix6d found_covariance = Matrix6d::Zero();
 };
 
-/// A pose of the odometry with its covariance, as in Relocalisation.
+/// A pose in the odometry frame with its covariance, as in Relocalisation.
 struct OdometryPose {
   SE3 T_odometry_camera;
   Matrix6d covariance = Matrix6d::Zero();
@@ -31,28 +31,27 @@ class OdometryWorld {
  public:
   [[nodiscard]] const SE3& T_current_odometry() const { return T_current_odometry_; }
 
-  /// The estimate found itself at T_current_camera; `last` is the last pose before whose covariance is known.
+  /// Records a relocalisation to T_current_camera. `last`: the last earlier pose with a covariance.
   void relocalise(const Relocalisation& found, const SE3& T_current_camera, const OdometryPose& last);
-  /// All of the current world moves.
+  /// Moves the current frame.
   void correct(const SE3& T_corrected_odometry) { T_current_odometry_ = T_corrected_odometry; }
 
-  /// How often the tracker was lost and found so far.
+  /// Number of relocalisations.
   [[nodiscard]] std::size_t relocalisations() const { return found_.size(); }
-  /// The one with that number, from 1 on.
+  /// Relocalisation by number, from 1 on.
   [[nodiscard]] const Relocalisation& relocalisation(std::size_t number) const { return found_[number - 1]; }
 
-  /// In the current world, of a pose that was added after so many relocalisations.
+  /// Pose in the current frame, for a pose that was added after the given number of relocalisations.
   [[nodiscard]] SE3 T_current_camera(const SE3& T_odometry_camera, std::size_t relocalisations) const;
-  /// The same as if nothing but relocalisations had moved that world.
+  /// As T_current_camera(), but moved by relocalisations only.
   [[nodiscard]] SE3 T_relocalised_camera(const SE3& T_odometry_camera, std::size_t relocalisations) const;
-  /// What dead reckoning added to the covariance of poses from now on, in all times that the tracker was
-  /// lost.
+  /// Covariance that dead reckoning in all losses so far adds to poses from now on.
   [[nodiscard]] Matrix6d lost_covariance_at(const SE3& T_odometry_camera) const;
 
  private:
   SE3 T_current_odometry_;
   std::vector<Relocalisation> found_;
-  /// By the number of relocalisations before: of that world, what is no correction.
+  /// Indexed by the number of earlier relocalisations; without the corrections.
   std::vector<SE3> T_relocalised_odometry_{SE3{}};
   Matrix6d lost_covariance_ = Matrix6d::Zero();  ///< at the last relocalisation
 };

@@ -14,7 +14,7 @@ namespace fusebench::loops {
 namespace {
 
 constexpr int kCell_px = 16;
-constexpr double kLeastShare = 0.05;  // of the cells, and of what the camera sees
+constexpr double kLeastShare = 0.05;  // of the cells, and of the visible cells
 constexpr double kLeastMisfit_m = 0.01;
 constexpr double kMisfitSigmas = 2.0;
 
@@ -23,7 +23,7 @@ int middle_px(int cell, int pixels) { return std::min(cell * kCell_px + kCell_px
 
 }  // namespace
 
-/// Rays through the middles of the cells.
+/// Casts rays through the centres of the cells.
 void PendingRevisits::look(const tsdf::TsdfVolume& model, const RgbdFrame& frame, const SE3& T_world_camera,
                            const Workers& workers) {
   const int columns = cells(camera_.width_px);
@@ -66,7 +66,7 @@ bool PendingRevisits::do_not_fit() const {
 std::optional<DepthImage> PendingRevisits::depth_to_fuse(const tsdf::TsdfVolume& model,
                                                          const RgbdFrame& frame, const SE3& T_world_camera,
                                                          const Workers& workers) {
-  if (loops_.max_pending_s == 0) return std::nullopt;  // whatever was seen, so nothing is looked at
+  if (loops_.max_pending_s == 0) return std::nullopt;  // the result would not be used
   look(model, frame, T_world_camera, workers);
   if (!do_not_fit()) {
     pending_since_ns_.reset();

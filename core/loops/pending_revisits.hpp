@@ -1,5 +1,6 @@
-// Surfaces that are seen again after a long time and do not fit what is measured now. Fused over, they would
-// become double walls; a loop that is accepted soon explains them, and the model is then fused again.
+// Deferred fusion: old surfaces that are seen again and do not fit the measured depth are not fused over,
+// which would create double walls. A loop that is accepted soon corrects the poses, and the model is then
+// fused again.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,10 @@ class PendingRevisits {
                   const PinholeCamera& camera)
       : depth_(depth), loops_(loops), camera_(camera) {}
 
-  /// What of the frame's depth (metres) may be fused at this pose: all of it but what is seen before, on or
-  /// behind surfaces that nothing was fused into for loops.least_age_s, if these do not fit (by median, more
-  /// than 1 cm and two standard deviations of the depth noise apart). Nothing if all of it may be, as after
-  /// loops.max_pending_s of frames that did not fit; where that is 0, neither model nor frame is looked at.
+  /// Returns the part of the depth (metres) that may be fused at this pose; nothing if all of it may be.
+  /// Excluded is depth in front of, on or behind surfaces that were not fused for loops.least_age_s, if their
+  /// median misfit exceeds 1 cm and two standard deviations of the depth noise. After loops.max_pending_s of
+  /// misfits all depth is fused. If that option is 0, the check is skipped.
   [[nodiscard]] std::optional<DepthImage> depth_to_fuse(const tsdf::TsdfVolume& model, const RgbdFrame& frame,
                                                         const SE3& T_world_camera, const Workers& workers);
 
@@ -36,10 +37,10 @@ class PendingRevisits {
   const config::DepthConfig& depth_;
   const config::LoopsConfig& loops_;
   const PinholeCamera& camera_;
-  std::optional<std::int64_t> pending_since_ns_;  ///< stamp of the first frame in a row that did not fit
-  std::vector<raycast::SurfacePoint> surfaces_;   ///< of the model, a pixel of each cell of the image
-  std::vector<bool> old_;                         ///< cells that see such a surface
-  std::vector<double> misfits_;                   ///< of these: distance by the allowed one
+  std::optional<std::int64_t> pending_since_ns_;  ///< stamp of the first of consecutive misfitting frames
+  std::vector<raycast::SurfacePoint> surfaces_;   ///< of the model, one pixel for each cell of the image
+  std::vector<bool> old_;                         ///< cells that show an old surface
+  std::vector<double> misfits_;                   ///< of old cells: distance divided by the tolerance
 };
 
 }  // namespace fusebench::loops

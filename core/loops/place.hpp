@@ -1,4 +1,4 @@
-// What loops are closed between, and the pairs that were looked at.
+// Places and candidate pairs of loop closure.
 #pragma once
 
 #include <cstddef>
@@ -14,36 +14,37 @@ namespace fusebench::loops {
 /// A fused frame that can be recognised when the camera comes back to it.
 struct Place {
   std::int64_t timestamp_ns = 0;  ///< of the frame
-  SE3 T_world_camera;             ///< when it was fused, in the world of the odometry
-  /// Of that pose in the world of the first camera, in its tangent (rotation on the right, world position).
+  SE3 T_world_camera;             ///< when it was fused, in the odometry frame
+  /// Covariance of that pose in the first camera frame, in its tangent (rotation on the right, world
+  /// position).
   Matrix6d covariance = Matrix6d::Zero();
-  /// What dead reckoning added to it in the times that the tracker was lost before.
+  /// Covariance that dead reckoning added in earlier losses.
   Matrix6d lost_covariance = Matrix6d::Zero();
   std::optional<Vector3d> gravity_camera;  ///< unit; with an IMU
-  double view_depth_m = 0;                 ///< median of its depth
+  double view_depth_m = 0;                 ///< median depth of the frame
   double blur_px = 0;
   Vector3d angular_velocity_camera_radps = Vector3d::Zero();
-  Vector3d velocity_camera_mps = Vector3d::Zero();  ///< of the camera, against the world
-  std::size_t relocalisations = 0;                  ///< before it
+  Vector3d velocity_camera_mps = Vector3d::Zero();  ///< relative to the world, camera axes
+  std::size_t relocalisations = 0;                  ///< number of relocalisations before it
   places::Appearance appearance;
 };
 
-/// What a pair is believed by.
+/// Evidence for a pair of places.
 enum class LoopEvidence {
   pair,              ///< its images and depth
-  pair_and_tracker,  ///< and a lost tracker found itself by it, which is support enough
-  tracker_alone,     ///< images and depth of the pair itself could not be verified
+  pair_and_tracker,  ///< images, depth and a self-relocalisation, which together are sufficient
+  tracker_alone,     ///< a self-relocalisation; images and depth could not be verified
 };
 
-/// A pair of places that was looked at.
+/// A candidate pair of places.
 struct LoopCandidate {
-  std::size_t known = 0;  ///< places, by index
+  std::size_t known = 0;  ///< indices of places
   std::size_t query = 0;
   double dissimilarity = 0;
   places::VerifiedPair pair;
-  double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
+  double chi2 = 0;  ///< squared distance to the current poses, by their drift and the error of the edge
   bool accepted = false;
-  std::string verdict;  ///< why it was taken or refused
+  std::string verdict;  ///< reason for the acceptance or rejection
   LoopEvidence evidence = LoopEvidence::pair;
 
   [[nodiscard]] bool by_tracker() const { return evidence != LoopEvidence::pair; }

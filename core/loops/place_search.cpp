@@ -11,7 +11,7 @@ namespace fusebench::loops {
 
 namespace {
 
-/// How many of the places were seen long before the last one.
+/// Number of places that are at least loops.least_age_s older than the last one.
 std::size_t count_of_old(std::span<const Place> places, const config::LoopsConfig& config) {
   const auto is_old = [&](const Place& place) {
     return seconds_between(place.timestamp_ns, places.back().timestamp_ns) >= config.least_age_s;
@@ -39,7 +39,8 @@ std::vector<std::size_t> places_in_view(std::span<const Place> places,
                                         const std::function<SE3(std::size_t)>& T_world_camera,
                                         const config::LoopsConfig& config) {
   constexpr double kMostTurned_rad = radians(60);
-  constexpr double kViewShare = 0.5;  // of the distance to what is seen: half of it is then seen by both
+  // of the distance to the surface: at this displacement half of the view overlaps
+  constexpr double kViewShare = 0.5;
   const auto middle_of_view = [&](std::size_t place, const SE3& T) {
     return T * Vector3d(0, 0, places[place].view_depth_m);
   };

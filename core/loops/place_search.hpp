@@ -1,4 +1,4 @@
-// Which older places a new one may be the same as: by what they look like, and by where the path leads.
+// Selects older places that may be the same as a new one, by appearance and by position.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,13 @@ namespace fusebench::loops {
 /// Share of the ferns that differ.
 [[nodiscard]] double dissimilarity(const Place& a, const Place& b);
 
-/// Of the places before the last one (loops.least_age_s or more), by index, the most similar to it first.
+/// Indices of the places that are at least loops.least_age_s older than the last one, in the order of
+/// similarity to it.
 [[nodiscard]] std::vector<std::size_t> similar_places(std::span<const Place> places,
                                                       const config::LoopsConfig& config);
 
-/// Those that see the same as the last one by these poses, in any world: where it is dark, blurred or bare,
-/// nothing else tells them. The nearest view first.
+/// Indices of places whose view overlaps that of the last one by the given poses (any frame), nearest first.
+/// Needed where dark, blurred or textureless images prevent a search by appearance.
 [[nodiscard]] std::vector<std::size_t> places_in_view(std::span<const Place> places,
                                                       const std::function<SE3(std::size_t)>& T_world_camera,
                                                       const config::LoopsConfig& config);

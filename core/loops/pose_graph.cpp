@@ -22,7 +22,7 @@ using smoother::as_vector;
 using smoother::rotation_vector;
 using smoother::Vector3;
 
-/// W with W^T W = covariance^-1; nothing if that does not exist.
+/// W with W^T W = covariance^-1; nothing if the covariance is singular.
 std::optional<Matrix6d> whitening_of(const Matrix6d& covariance) {
   const Eigen::LLT<Matrix6d> llt(covariance);
   if (llt.info() != Eigen::Success || !covariance.allFinite()) return std::nullopt;
@@ -62,7 +62,7 @@ struct GravityResidual {
   }
 };
 
-/// The mean of what the places say, by their poses.
+/// Mean of the gravity directions of all places, rotated by their poses.
 Vector3d gravity_world_of(const PoseGraph& graph) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 0; i < graph.T_world_camera.size(); ++i) {
@@ -71,10 +71,10 @@ Vector3d gravity_world_of(const PoseGraph& graph) {
   return sum.norm() > 0 ? sum.normalized() : Vector3d(Vector3d::UnitY());
 }
 
-/// The unknowns, with their residuals.
+/// The least-squares problem with its unknowns and residuals.
 class GraphProblem {
  public:
-  /// Poses and gravity are searched from what they are, and changed by search(). Both must outlive it.
+  /// search() starts from the given poses and gravity and updates them. Both must outlive the object.
   GraphProblem(const PoseGraph& graph, std::vector<SE3>& poses, Vector3d& gravity_world)
       : graph_(graph), poses_(poses), gravity_world_(gravity_world), problem_(borrowing_losses()) {
     add_poses();
@@ -99,7 +99,7 @@ class GraphProblem {
     return {};
   }
 
-  /// robust_sigmas: of the Cauchy loss of loops. Errors: the search failed.
+  /// robust_sigmas: scale of the Cauchy loss of loops. Errors: the search failed.
   Result<void> search(double robust_sigmas) {
     loop_loss_.Reset(new ceres::CauchyLoss(robust_sigmas), ceres::TAKE_OWNERSHIP);
     ceres::Solver::Options options;
@@ -144,7 +144,7 @@ class GraphProblem {
   const PoseGraph& graph_;
   std::vector<SE3>& poses_;
   Vector3d& gravity_world_;
-  ceres::LossFunctionWrapper loop_loss_{nullptr, ceres::TAKE_OWNERSHIP};  ///< of all loops
+  ceres::LossFunctionWrapper loop_loss_{nullptr, ceres::TAKE_OWNERSHIP};  ///< shared by all loops
   ceres::Problem problem_;
 };
 
@@ -157,9 +157,8 @@ double squared_residual(const GraphEdge& edge, const std::vector<SE3>& T_world_c
 }
 
 Result<std::vector<SE3>> optimised_poses(const PoseGraph& graph) {
-  // A loop may be off by many of its own standard deviations at first, since the path has drifted: it is
-  // trusted at first, and has to hold its own against the others as the loss narrows (graduated
-  // non-convexity; Blake & Zisserman 1987).
+  // The path has drifted, so the residual of a correct loop can be many of its standard deviations. The loss
+  // starts wide and is narrowed step by step (graduated non-convexity; Blake & Zisserman 1987).
   constexpr std::array<double, 4> kRobustSigmas = {64, 16, 4, 1};
   std::vector<SE3> poses = graph.T_world_camera;
   if (poses.size() < 2) return poses;

@@ -1,4 +1,4 @@
-// The photometric residual of eight pixels, as the sums and the costs of a patch are made of it.
+// The photometric residual of eight pixels, shared by the sums and the costs of a patch.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -7,7 +7,7 @@
 
 namespace fusebench::measurement {
 
-/// A pixel's residual against the patch's grey level at this brightness, and its whitening factor.
+/// Residual against the patch's grey level at the given brightness, with its whitening factor.
 struct GreyResidual {
   GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
       : gain(static_cast<float>(gain_and_offset.x())),
@@ -23,8 +23,8 @@ struct GreyResidual {
   float per_noise;
 };
 
-/// A coordinate at which the image is read: at a whole pixel cubic interpolation is the pixel itself, and its
-/// slope the central difference.
+/// Coordinate for sampling. At whole pixels, cubic interpolation returns the pixel itself, and its slope is
+/// the central difference.
 inline simd::Float8 sampled_at(simd::Float8 coordinate, config::Sampling sampling) {
   if (sampling == config::Sampling::bicubic) return coordinate;
   return simd::to_float(simd::to_int(coordinate + 0.5F));

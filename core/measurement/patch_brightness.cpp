@@ -16,7 +16,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Information of a prior with that standard deviation; zero sigma fixes the value.
+/// Information of a prior with that standard deviation; a sigma of zero fixes the value.
 double prior_information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 1e18; }
 
 }  // namespace
@@ -29,7 +29,7 @@ void PatchBrightness::try_step(const Eigen::Matrix<double, filter::kPoseSize, 1>
 
 BrightnessPrior::BrightnessPrior(const config::PhotometricConfig& config, double common_gain)
     : common_gain_(common_gain) {
-  // A tone curve gives dark and bright patches gains and offsets of their own.
+  // A tone curve changes the gains and offsets of dark and bright patches differently.
   constexpr double kOwnShare = 0.5;
   constexpr double kMiddle_grey = 128;
   const double own_gain = kOwnShare * std::abs(common_gain - 1);
@@ -55,7 +55,7 @@ void BrightnessPrior::eliminate(PatchBrightness& light, filter::PoseQuadratic& p
 
 double common_gain(const patches::LevelLanes& level, const GreyImage& image) {
   constexpr std::size_t kFewestPatches = 5;
-  constexpr double kSomeLight_grey = 5;  // below, noise and the black level decide
+  constexpr double kSomeLight_grey = 5;  // below this level noise and the black level dominate
   std::vector<double> gains;
   for (std::size_t p = 0; p + 1 < level.first.size(); ++p) {
     simd::Float8 observed{}, reference{};

@@ -1,4 +1,4 @@
-// The brightness of a patch in a frame: a gain and an offset that are estimated along with the pose.
+// The brightness of a patch in a frame: a gain and an offset, estimated together with the pose.
 #pragma once
 
 #include "core/base/image.hpp"
@@ -9,10 +9,10 @@
 
 namespace fusebench::measurement {
 
-/// Gain and offset (grey levels), eliminated from each step (Schur complement) and carried along. The normal
-/// equations are of the last linearisation.
+/// Gain and offset (grey levels). They are eliminated from each step by the Schur complement and updated
+/// afterwards. The normal equations are those of the last linearisation.
 struct PatchBrightness {
-  /// Sets `trial` to a fraction of the step that belongs to a step of the pose.
+  /// Sets `trial` to `fraction` of the brightness step that corresponds to the pose step.
   void try_step(const Eigen::Matrix<double, filter::kPoseSize, 1>& pose_step, double fraction);
 
   Vector2d value{1.0, 0.0};
@@ -22,8 +22,8 @@ struct PatchBrightness {
   Eigen::Matrix<double, 2, filter::kPoseSize> by_pose = Eigen::Matrix<double, 2, filter::kPoseSize>::Zero();
 };
 
-/// Brightness has the gain that all patches have in common and no offset, up to the sigmas of the
-/// configuration and half of the common change; a sigma of zero fixes the value.
+/// Prior of the brightness: the common gain of all patches and zero offset, with the sigmas of the
+/// configuration plus half of the common change. A sigma of zero fixes the value.
 class BrightnessPrior {
  public:
   explicit BrightnessPrior(const config::PhotometricConfig& config, double common_gain = 1);
@@ -39,9 +39,9 @@ class BrightnessPrior {
   double common_gain_;
 };
 
-/// The gain of a frame against the patches: the median over the patches of the ratio of their mean grey
-/// levels there to those of the reference. 1 if fewer than five patches have visible pixels of some light.
-/// `level`: coarse, so that the means hardly depend on where exactly the patches are; already warped.
+/// Common gain of a frame: median over the patches of (mean grey level in the frame) / (mean grey level in
+/// the reference). 1 if fewer than five patches have visible pixels with enough light. `level`: a warped
+/// coarse level, whose means are insensitive to position errors.
 [[nodiscard]] double common_gain(const patches::LevelLanes& level, const GreyImage& image);
 
 }  // namespace fusebench::measurement

@@ -1,5 +1,5 @@
-// PatchMeasurement's costs of a step that is tried: the residuals that the last linearisation fixed, at other
-// poses and without derivatives.
+// Costs of trial steps in PatchMeasurement: residuals of the last linearisation at other poses, without
+// derivatives.
 #include <vector>
 
 #include "core/config/groups/residuals_config.hpp"
@@ -62,8 +62,8 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
     for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
       const simd::Int8 used = levels_[l].fixed[i].photometric;
       if (!simd::any(used)) continue;
-      // A pixel that leaves the image, or passes behind the camera, keeps its cost at the border: leaving the
-      // image must not lower the cost.
+      // A pixel that leaves the image or passes behind the camera keeps its cost at the border, so leaving
+      // the image does not lower the cost.
       const simd::Points point = camera.to_camera(lanes.projected(i));
       const simd::Float8 inverse_z =
           1.0F / simd::max(used ? point.z : simd::all_lanes(1.0F), simd::all_lanes(1e-3F));

@@ -18,7 +18,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// A local origin near the points of the patches.
+/// Local origin near the points of the patches.
 Vector3d origin_of(std::span<const patches::Patch> patches) {
   for (const patches::Patch& patch : patches) {
     for (const patches::PatchLevel& level : patch.levels) {
@@ -81,7 +81,7 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   photometric_variance_ = measured_variance(&PatchState::photometric);
   geometric_variance_ = measured_variance(&PatchState::geometric) + common_depth_variance();
   filter::MeasurementQuadratic sum;
-  sum.undone = frame_->motion.undone;
+  sum.compensated = frame_->motion.compensated;
   const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
   DisplacedPatches color;
   DisplacedPatches depth;
@@ -98,9 +98,9 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   return sum;
 }
 
-/// Where the first linearisation puts the patches. Patches of an anchor may be seconds old; those of the
-/// frame before have its exposure up to the prior's standard deviations, and Eq. 3 without brightness has no
-/// gain.
+/// Estimates the common gain at the first linearisation. Patches of an anchor can be seconds old. Patches of
+/// the previous frame have its exposure within the standard deviations of the prior. Eq. 3 without brightness
+/// has no gain.
 void PatchMeasurement::find_common_gain() {
   const bool has_gain = frame_->color_is_new && photometric_.gain_sigma > 0 &&
                         config_.patches.refresh == config::Refresh::anchor;
@@ -110,7 +110,7 @@ void PatchMeasurement::find_common_gain() {
   for (PatchState& state : states_) state.brightness.value = brightness_prior_.mean();
 }
 
-/// None if the patch measures nothing.
+/// Nothing if the patch has no residuals.
 std::optional<PatchRows> PatchMeasurement::rows_of(std::size_t patch,
                                                    const patches::PosedCamera& camera) const {
   const auto& pixels = patches_[patch].levels.front().pixels;
@@ -122,9 +122,9 @@ std::optional<PatchRows> PatchMeasurement::rows_of(std::size_t patch,
   return PatchRows{share(rig_.camera.project(centre).y()), share(patches_[patch].centre_px.y())};
 }
 
-/// The variance factor of what is independent from frame to frame. A residual has the noise of two images.
-/// That of an anchor is the same in all frames that are compared with it: it is an error of the anchor's pose
-/// (filter::with_anchor_noise()), and half of the variance is left.
+/// Variance factor of the errors that are independent between frames. A residual contains the noise of two
+/// images. The noise of an anchor's image is common to all frames compared with it and counts as an error of
+/// the anchor's pose (filter::with_anchor_noise()). Half of the variance remains.
 double PatchMeasurement::color_variance() const {
   const double share = config_.patches.refresh == config::Refresh::anchor ? 0.5 : 1.0;
   return share * photometric_variance_;
@@ -144,7 +144,7 @@ double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*ki
 }
 
 double PatchMeasurement::common_depth_variance() const {
-  // Without an IMU nothing else tells a turn where colour has little to say.
+  // Without an IMU, nothing else constrains the rotation where colour has little information.
   if (config_.terms.prior != config::Prior::imu) return 0;
   int residuals = 0;
   for (std::size_t p = 0; p < states_.size(); ++p) {
@@ -154,7 +154,7 @@ double PatchMeasurement::common_depth_variance() const {
   return common_error_factor(measurements, config_.geometric.common_error_share);
 }
 
-/// Levels are independent of each other and have about the same number of pixels.
+/// Levels are independent and have similar numbers of pixels.
 void PatchMeasurement::warp_all(const PosedLevels& posed) {
   const bool coarse = finest_ > 0;
   const double tolerance_m = (coarse ? 2.0 : 1.0) * config_.patches.occlusion_distance_m;

@@ -1,7 +1,7 @@
-// The measurement of the filter: all patches against one frame. Stacks the photometric (Eq. 3) and
-// point-to-plane (Eq. 4) residuals of all pixels of all patches, whitened and robustly weighted, and reduces
-// them to two 6x6 information forms: colour constrains the pose relative to the reference frame, depth the
-// pose relative to the model.
+// Residuals of all patches in one frame, the measurement of the filter. Photometric (Eq. 3) and
+// point-to-plane (Eq. 4) residuals of all pixels are whitened, robustly weighted and summed to two 6x6
+// information forms. Colour constrains the pose relative to the reference frame, depth the pose relative to
+// the model.
 #pragma once
 
 #include <optional>
@@ -28,18 +28,18 @@ namespace fusebench::measurement {
 struct ObservedFrame {
   std::span<const GreyImage> pyramid;
   const DepthImage& depth_m;  ///< gated
-  bool color_is_new = true;   ///< otherwise it says nothing of this instant: no photometric residuals
-  bool depth_is_new = true;   ///< otherwise no geometric ones
+  bool color_is_new = true;   ///< false: repeated image, no photometric residuals
+  bool depth_is_new = true;   ///< false: repeated image, no geometric residuals
   ReadoutMotion motion = {};
 };
 
 class PatchMeasurement final : public filter::PoseMeasurement {
  public:
-  /// All references must outlive the measurement.
+  /// The references must outlive the measurement.
   PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers);
 
-  /// Sets the frame, reusing the buffers of the one before; must be called before all else. Frame and patches
-  /// must outlive the use of the measurement, unchanged.
+  /// Sets the frame and reuses the buffers. Call it before the other functions. Frame and patches must
+  /// outlive the use of the measurement and stay unchanged.
   void observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
                const ResidualScale& scale);
 
@@ -50,32 +50,31 @@ class PatchMeasurement final : public filter::PoseMeasurement {
                                   double fraction) override;
   void accept() override;
 
-  /// After the last linearise(): finds each patch by a translation of its own, from where this pose puts it
-  /// (terms.patch_motion). Changes where its pixels are and what is seen of it, and nothing else.
+  /// After the last linearise(): moves each patch by its own translation, from its position at this pose
+  /// (terms.patch_motion). Changes only the pixel positions and their visibility.
   void move_patches_alone(const SE3& T_world_imu_predicted);
 
-  /// One outcome a patch, from the last linearise() (which must have been of the last stage).
+  /// One outcome for each patch, from the last linearise(), which must have been of the last stage.
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
-  /// False where the frame repeats an earlier colour image.
+  /// False if the frame repeats an earlier colour image.
   [[nodiscard]] bool color_is_new() const { return frame_ && frame_->color_is_new; }
-  /// Ratios of the variance of what residuals of a kind say of the pose to the nominal one there
-  /// (patch_scatter.hpp).
+  /// Ratio of the variance of the pose by residuals of one kind to its nominal value (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
-  /// Of the pose against the reference frame, by the last linearise(): tangent of the pose (6x6).
+  /// Information of the pose against the reference frame at the last linearise(), in the tangent of the pose.
   [[nodiscard]] Matrix6d color_information() const;
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
-  /// The level-0 pixels of tracked patches there, by patch.
+  /// Level-0 pixels of the tracked patches at the last linearise(), by patch.
   [[nodiscard]] TrackedPixels tracked_pixels() const;
 
  private:
-  /// Everything that the last linearisation fixed for one patch.
+  /// Quantities of a patch that are fixed by the last linearisation.
   struct PatchState {
     PatchBrightness brightness;
     filter::PoseQuadratic photometric;
     filter::PoseQuadratic geometric;
-    bool counts = false;  ///< has residuals, and was not rejected
+    bool counts = false;  ///< has residuals and was not rejected
   };
-  /// What the last linearisation fixed for eight pixels.
+  /// Quantities of eight pixels that are fixed by the last linearisation.
   struct FixedLanes {
     PlanePairs pairs;
     simd::Int8 photometric{};  ///< pixels with a residual
@@ -85,11 +84,11 @@ class PatchMeasurement final : public filter::PoseMeasurement {
     std::vector<FixedLanes> fixed;
     patches::MutualOcclusion occlusion;
   };
-  /// The hypothesis for colour at all pyramid levels, and for depth.
+  /// A pose hypothesis, for colour at all pyramid levels and for depth.
   struct PosedLevels;
-  /// How residuals of one kind are weighted.
+  /// Weights of the residuals of one kind.
   struct Weighting {
-    float share = 0;          ///< of a pixel's residual in one measurement
+    float share = 0;          ///< of one residual in the measurement
     float robust_sigmas = 0;  ///< Huber's k
   };
 
@@ -110,22 +109,23 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;
 
   const config::Config& config_;
-  const config::PhotometricConfig& photometric_;  ///< of config_
+  const config::PhotometricConfig& photometric_;  ///< part of config_
   const SensorRig& rig_;
   const Workers& workers_;
   std::optional<ObservedFrame> frame_;
   std::span<const patches::Patch> patches_;
   ResidualScale scale_;
-  TermWeights weights_;                ///< in this frame
-  std::optional<double> common_gain_;  ///< of this frame, from the first linearise() on
+  TermWeights weights_;                ///< in the current frame
+  std::optional<double> common_gain_;  ///< of the current frame, set by the first linearise()
   BrightnessPrior brightness_prior_;
-  Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
+  Vector3d origin_world_ = Vector3d::Zero();  ///< origin of the lane coordinates
   AssociationGates gates_;
-  std::size_t finest_ = 0;  ///< level that the last linearise() began with
+  std::size_t finest_ = 0;  ///< first level of the last linearise()
   std::vector<Level> levels_;
   std::vector<PatchState> states_;
   std::vector<PatchOutcome> outcomes_;
-  double photometric_variance_ = 1;  ///< these two: factors on the nominal variance, by the last linearise()
+  /// factor on the nominal variance at the last linearise(), as geometric_variance_
+  double photometric_variance_ = 1;
   double geometric_variance_ = 1;
 };
 

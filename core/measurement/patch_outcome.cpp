@@ -13,7 +13,8 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Sums for the correlation of two intensities, less a middle grey so that single precision will do.
+/// Sums for the correlation of two intensities. A middle grey is subtracted to keep single precision
+/// sufficient.
 struct Correlation {
   void add(simd::Float8 observed, simd::Float8 reference, simd::Int8 used) {
     const simd::Float8 a = used ? observed - 128.0F : simd::Float8{};
@@ -31,7 +32,7 @@ struct Correlation {
     const double aa = simd::sum_of_lanes(sum_aa) / count - a * a;
     const double bb = simd::sum_of_lanes(sum_bb) / count - b * b;
     outcome.contrast_grey = std::sqrt(std::max({aa, bb, 0.0}));
-    if (aa < 1e-3 || bb < 1e-3) return;  // of one grey
+    if (aa < 1e-3 || bb < 1e-3) return;  // constant grey
     outcome.correlation = (simd::sum_of_lanes(sum_ab) / count - a * b) / std::sqrt(aa * bb);
   }
   simd::Float8 sum_a{}, sum_b{}, sum_aa{}, sum_bb{}, sum_ab{};
@@ -76,7 +77,7 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
   outcome.tracked = outcome.usable_pixels >= config.min_valid_px &&
                     outcome.usable_pixels >= config.min_valid_fraction * square;
   if (outcome.usable_pixels > 0) {
-    // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
+    // The centres of the pixels of an even square [c - s/2, c + s/2) have their mean at c - 1/2.
     outcome.centre_px =
         outcome.centre_px / outcome.usable_pixels + Vector2d::Constant(config.size_px % 2 == 0 ? 0.5 : 0.0);
     correlation.describe(outcome);
@@ -88,8 +89,7 @@ bool fits_color(const PatchOutcome& outcome, const config::IekfConfig& config, c
   const bool photometric =
       weights.photometric <= 0 ||
       outcome.chi2_photometric <= config.max_chi2_per_measurement * outcome.photometric_residuals;
-  // A patch with a gain near 0 fits any image: a gain far from 1 indicates a wrong match rather than a change
-  // of brightness.
+  // A gain near 0 fits any image, so a gain far from 1 indicates a wrong match, not a change of brightness.
   constexpr double kMaxGain = 2.0;
   return photometric && outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
 }

@@ -4,7 +4,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-// Columns of the errors.
+// Columns of ReadoutVector.
 constexpr int kColorReadout = 0;
 constexpr int kDepthReadout = 1;
 constexpr int kDepthDelay = 2;
@@ -54,7 +54,7 @@ std::array<PoseByReadout, 2> color_displacement(const ReadoutMotion& motion) {
   }
   reference.col(kOtherTiming) =
       -(motion.supposed_s[kColorReadout] - motion.reference_color_readout_s) * motion.reference_rate;
-  // A patch is in about the same row of both: the difference of the rates tells.
+  // A patch is in about the same row of both images, so only the difference of the rates is observable.
   displace_by_rate(now, kRateAgainstReference, motion.color_readout_s);
   return maps;
 }
@@ -62,7 +62,7 @@ std::array<PoseByReadout, 2> color_displacement(const ReadoutMotion& motion) {
 std::array<PoseByReadout, 2> depth_displacement(const ReadoutMotion& motion) {
   std::array<PoseByReadout, 2> maps = none();
   auto& [always, now] = maps;
-  // Surfaces that were fused in the same row, during the same motion, are displaced alike.
+  // Surfaces that were fused from the same row during the same motion have equal displacements.
   const filter::FusedReadout& model = motion.model;
   always.col(kDepthDelay) = motion.rate - model.rate;
   always.col(kOtherTiming) = model.by_delay - motion.supposed_s[kDepthDelay] * model.rate;

@@ -1,8 +1,9 @@
-// How what the patches measure depends on the read-out of the images. A row that was read later than supposed
-// shows the scene from where the camera was then: for a patch, an error of the timing displaces the pose by
-// the motion during that time, and an error of the motion displaces it by what adds up between the frame's
-// instant and the row's. What the patch is compared with, reference or model, was displaced likewise by
-// errors of its own: only the difference shows.
+// Dependence of the patch residuals on the read-out of the images.
+//
+// A row that is read dt later than assumed shows the scene from the pose at that time. For a patch, an error
+// dt of the timing displaces the pose by rate * dt. An error of the rate displaces it by (error * time
+// between the instant of the frame and that of the row). Reference and model are displaced by their own
+// errors, and only the difference is observable.
 #pragma once
 
 #include <array>
@@ -11,47 +12,47 @@
 
 namespace fusebench::measurement {
 
-/// What the images were prepared for: when their rows were read, and how the camera moved meanwhile, as the
-/// tangent of its pose by time (filter::pose_rate()), around the prior's pose. Zero where the read-out is not
-/// undone: then nothing is learnt of it.
+/// Timing and motion for which the images were compensated, relative to the prior: rates are tangents of the
+/// pose by time (filter::pose_rate()) at the prior's pose. Zero if the read-out is not compensated; its
+/// errors are not estimated then.
 struct ReadoutMotion {
   double color_readout_s = 0;
   double depth_readout_s = 0;
   double depth_delay_s = 0;
-  Vector6d rate = Vector6d::Zero();            ///< in the frame
-  Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
-  filter::FusedReadout model = {};             ///< of the frames in the model
-  // Errors of the timing that were supposed (SensorErrors::timing_s()): in the frame, in the reference.
+  Vector6d rate = Vector6d::Zero();            ///< of the frame
+  Vector6d reference_rate = Vector6d::Zero();  ///< of the reference, during its read-out
+  filter::FusedReadout model = {};             ///< of the frames fused into the model
+  // Timing errors (SensorErrors::timing_s()) that were assumed in the frame and in the reference.
   Vector3d supposed_s = Vector3d::Zero();
   double reference_color_readout_s = 0;
-  /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone); between
-  /// them -1, for which the displacements of reference and model by another timing count once.
-  filter::ReadoutVector undone = filter::ReadoutVector::Zero();
-  /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
+  /// Compensated read-out errors relative to the prior (filter::MeasurementQuadratic::compensated). Entry 3
+  /// is -1, so that column 3 adds the displacements of reference and model by their assumed timing.
+  filter::ReadoutVector compensated = filter::ReadoutVector::Zero();
+  /// True if the rates differ by more than their noise. With equal rates, both frames have equal distortions.
   bool tells_color_readout = false;
 };
 
-/// Tangent of the pose by the errors of the read-out.
+/// Derivative of the pose tangent with respect to the read-out errors.
 using PoseByReadout = Eigen::Matrix<double, filter::kPoseSize, filter::kReadoutSize>;
 
-/// Measurements by patches of which the errors of the read-out displace the pose, each by two known maps with
-/// weights of its own.
+/// Sums over patches whose pose is displaced by the read-out errors: by w_0 M_0 + w_1 M_1, with two common
+/// maps M and two weights w of each patch.
 class DisplacedPatches {
  public:
   void add(const filter::PoseQuadratic& by_pose, const Vector2d& weights);
-  /// variance: what information and gradients are divided by.
+  /// variance: divisor of information and gradients.
   [[nodiscard]] filter::ReadoutQuadratic by_readout(const std::array<PoseByReadout, 2>& maps,
                                                     double variance) const;
 
  private:
-  // Sums over the patches: of information and gradient, by one weight and by the products of two.
+  // Sums over the patches of information and gradient, weighted by one weight and by products of two.
   std::array<Matrix6d, 2> information_ = {Matrix6d::Zero(), Matrix6d::Zero()};
   std::array<Vector6d, 2> gradient_ = {Vector6d::Zero(), Vector6d::Zero()};
   std::array<Matrix6d, 3> products_ = {Matrix6d::Zero(), Matrix6d::Zero(), Matrix6d::Zero()};
 };
 
-/// Where a patch is in the frame and in the image that it was cut from: rows from the middle one, as shares
-/// of the image's height. By colour, a patch's weights are these.
+/// Row positions of a patch in the frame and in its reference image, relative to the middle row, as shares of
+/// the image height. They are the weights of the patch for colour.
 struct PatchRows {
   double now = 0;
   double reference = 0;

@@ -9,7 +9,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Pseudo-inverse after scaling the diagonal to one, so that radians and metres compare.
+/// Pseudo-inverse after scaling the diagonal to one, which makes radians and metres comparable.
 Matrix6d scaled_pseudo_inverse(const Matrix6d& information) {
   constexpr double kMinShare = 1e-6;
   Vector6d scale = Vector6d::Zero();
@@ -38,20 +38,21 @@ Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters) {
   if (!(information.trace() > 0)) return {};
   const Matrix6d covariance = scaled_pseudo_inverse(information);
   const Vector6d optimum = -(covariance * gradient);
-  // With gradients of variance factor * information, the expected square of a cluster's gradient in the
-  // metric of the covariance is factor times its share, less the reduction by the optimum itself.
+  // If gradients have the variance factor * information, the expected squared gradient of a cluster in the
+  // metric of the covariance is factor * share, minus the reduction by the optimum itself.
   double scatter = 0, expected = 0, squared_influence = 0;
   for (const filter::PoseQuadratic& cluster : clusters) {
     const Vector6d left = cluster.gradient + cluster.information * optimum;
     const Matrix6d influence = covariance * cluster.information;
     scatter += left.dot(covariance * left);
-    const double squared = influence.cwiseProduct(influence.transpose()).sum();  // trace of its square
+    // trace of the squared influence
+    const double squared = influence.cwiseProduct(influence.transpose()).sum();
     expected += influence.trace() - squared;
     squared_influence += squared;
   }
   if (!(expected > 1e-9)) return {};
   const double total = (covariance * information).trace();
-  // Satterthwaite: the freedom of a sum of squares with unequal weights.
+  // Satterthwaite: degrees of freedom of a weighted sum of squares.
   return {scatter / expected, total * total / squared_influence};
 }
 

@@ -1,11 +1,10 @@
-// Variance factor of an estimate from patches, from the scatter between patches.
+// Variance factor of an estimate from patches, computed from the scatter between patches.
 //
-// The pixels of a patch share their errors (blur, calibration, interpolation, a bump of the model), so the
-// information of all pixels as if they were independent is too optimistic, by a factor that differs between
-// sensors, scenes and speeds. Patches err nearly independently of each other, so the scatter of their
-// gradients around the common optimum shows the true variance (the cluster-robust, or sandwich, estimate of
-// Liang & Zeger 1986, reduced to one number). What all patches have in common does not show in it, and is
-// told by the configuration.
+// The pixels of a patch share errors (blur, calibration, interpolation, errors of the model). Treating them
+// as independent overestimates the information, by a factor that depends on sensor, scene and speed. Errors
+// of different patches are nearly independent, so the scatter of their gradients around the common optimum
+// gives the true variance (cluster-robust or sandwich estimate of Liang & Zeger 1986, reduced to one number).
+// Errors that all patches share are not visible in the scatter; the configuration gives them.
 #pragma once
 
 #include <span>
@@ -14,25 +13,25 @@
 
 namespace fusebench::measurement {
 
-/// `factor` is the variance of the gradients of clusters over the one that their information matrix predicts
-/// (1 if the noise model is right); `freedom` the degrees of freedom of this estimate (0: no clusters).
+/// factor: variance of the cluster gradients divided by the variance that their information matrix predicts
+/// (1 for a correct noise model). freedom: degrees of freedom of this estimate (0: no clusters).
 struct Scatter {
   double factor = 1;
   double freedom = 0;
 };
 
-/// Clusters without information are left out; so are directions of the pose in which there is none.
+/// Ignores clusters without information and directions of the pose without information.
 [[nodiscard]] Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters);
 
-/// Lower bound of the factor: identical images have no scatter at all.
+/// Lower bound of the factor, since identical images have zero scatter.
 inline constexpr double kMinVarianceFactor = 1e-3;
 
-/// The mean of a prior factor of 1, which weighs `prior_freedom`, and the measured one.
+/// Weighted mean of the prior factor 1 (weight prior_freedom) and the measured factor (weight
+/// scatter.freedom).
 [[nodiscard]] double variance_factor(const Scatter& scatter, double prior_freedom);
 
-/// What an error that all measurements of a frame have in common, of `share` standard deviations of the noise
-/// of one, adds to the variance factor of the estimate from all of them: the variance of the mean of n such
-/// measurements is (1 + n share^2) / n.
+/// Addition to the variance factor by an error common to all n measurements, of `share` standard deviations
+/// of the noise of one: the variance of the mean is (1 + n share^2) / n.
 [[nodiscard]] constexpr double common_error_factor(double measurements, double share) {
   return measurements * share * share;
 }

@@ -9,9 +9,9 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Where the visible pixels of a square are, and how far they moved in the mean.
+/// Positions of the visible pixels of a square and their mean motion.
 struct VisiblePlaces {
-  std::vector<std::optional<Vector2d>> at_px;  ///< by pixel of the square
+  std::vector<std::optional<Vector2d>> at_px;  ///< index: pixel of the square
   Vector2d mean_motion_px = Vector2d::Zero();
 };
 

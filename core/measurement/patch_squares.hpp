@@ -1,5 +1,5 @@
-// The whole squares of tracked patches, with the pixels that the estimator does not use: input of definitions
-// of the intensity error that know no mask (docs/metrics.md).
+// Whole squares of tracked patches, including pixels that the estimator does not use. Input of the
+// definitions of the intensity error without a mask (docs/metrics.md).
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ struct SeenPatch {
   std::span<const patches::WarpedLanes> warped;
 };
 
-/// Adds the pixels of its square: the visible ones where they were warped to, the others moved by the mean
-/// motion of these. Pixels that are moved out of the image are left out. reference_width_px: of the frame
-/// that the patch was cut from.
+/// Adds the pixels of the square: visible ones at their warped positions, the others moved by the mean motion
+/// of the visible ones. Pixels outside the image are skipped. reference_width_px: width of the frame from
+/// which the patch was cut.
 void add_square(const SeenPatch& seen, const GreyImage& image, int reference_width_px,
                 std::vector<SquarePixel>& pixels);
 

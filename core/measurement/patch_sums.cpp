@@ -11,10 +11,10 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Of the largest distance between a point and its measurement: smaller changes keep an association.
+/// As a share of the largest association distance: smaller changes keep an association.
 constexpr float kSameShare = 0.1F;
 
-/// Unit normals of the measured surface are compared with the model's without a division: cos >= min_cosine.
+/// Tests the angle between measured and model normals, cos >= min_cosine, without a division.
 simd::Int8 within_angle(const simd::Points& direction, const simd::Points& unit, float min_cosine) {
   const simd::Float8 length = simd::norm(direction);
   return (length > 0.0F) & (simd::dot(direction, unit) >= min_cosine * length);
@@ -44,7 +44,7 @@ MeasuredNormals measured_normals(const patches::PosedLanes& camera, const DepthI
       camera.back_project(u + kStep, v, right_m) - camera.back_project(u - kStep, v, left_m);
   const simd::Points down =
       camera.back_project(u, v + kStep, down_m) - camera.back_project(u, v - kStep, up_m);
-  // y points down, so down x across looks back at the camera.
+  // y points down, so down x across points towards the camera.
   return {simd::cross(down, across),
           inside & (left_m > 0.0F) & (right_m > 0.0F) & (up_m > 0.0F) & (down_m > 0.0F)};
 }
@@ -130,7 +130,7 @@ PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLane
   pairs.valid = surface.valid & within_angle(surface.normal, normal, gates.min_normal_cosine) &
                 (incidence_cosine >= gates.min_incidence_cosine);
   pairs.point_imu = camera.to_imu(measured);
-  // Depth noise acts along the ray; its component along the normal enters the residual.
+  // Depth noise is along the ray; the residual contains its component along the normal.
   const simd::Float8 along_normal_m = gates.depth_sigma.at_m(measured_m) * range_m /
                                       (near ? measured_m : simd::all_lanes(1.0F)) * incidence_cosine;
   pairs.sigma_m = gates.noise_scale *

@@ -1,4 +1,4 @@
-// The sums over the residuals of a patch (Eqs. 3 and 4), eight pixels at a time.
+// Sums over the residuals of a patch (Eqs. 3 and 4), eight pixels at a time.
 #pragma once
 
 #include <array>
@@ -12,43 +12,43 @@
 
 namespace fusebench::measurement {
 
-/// A residual's derivative by the tangent of T_world_imu: rotation (rad, IMU frame), position (m, world).
+/// Derivative of a residual with respect to the tangent of T_world_imu: rotation (rad, IMU frame), position
+/// (m, world).
 using JacobianLanes = std::array<simd::Float8, filter::kPoseSize>;
 
-/// Normal equations and cost of residuals of one kind. Lanes are added in their order at the end.
+/// Normal equations and cost of residuals of one kind. The lanes are added in a fixed order at the end.
 class QuadraticSums {
  public:
-  /// weight: of the squared residual in the normal equations; it and the cost are 0 where there is no
+  /// weight: of the squared residual in the normal equations. Weight and cost are 0 for lanes without a
   /// residual.
   void add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight, simd::Float8 cost);
   [[nodiscard]] filter::PoseQuadratic total() const;
 
  private:
   std::array<simd::Float8, filter::kPoseSize*(filter::kPoseSize + 1) / 2>
-      information_{};  // upper triangle by rows
+      information_{};  // upper triangle, row by row
   std::array<simd::Float8, filter::kPoseSize> gradient_{};
   simd::Float8 cost_{};
 };
 
-/// How well residuals fit their noise.
+/// Sums for the fit of residuals to their noise model.
 struct FitSums {
   void add(simd::Float8 whitened, simd::Float8 robust_weight, simd::Int8 counted);
 
-  simd::Float8 chi2{};    ///< of squared whitened residuals
-  simd::Float8 robust{};  ///< the same, times the kernel's weight
+  simd::Float8 chi2{};    ///< sum of squared whitened residuals
+  simd::Float8 robust{};  ///< as chi2, times the robust weight
   int count = 0;
 };
 
-/// Huber's kernel on whitened residuals: quadratic up to k, linear beyond. The weight is that of the squared
-/// residual in the normal equations.
+/// Huber's kernel on whitened residuals: quadratic up to k, linear beyond. weight: of the squared residual in
+/// the normal equations.
 struct RobustLanes {
   simd::Float8 cost{};
   simd::Float8 weight{};
 };
 [[nodiscard]] RobustLanes huber(simd::Float8 whitened, float k);
 
-/// Derivatives of gain * reference + offset, the brightness of a patch, and their products with those by the
-/// pose.
+/// Sums for the brightness of a patch, gain * reference + offset, and its products with the pose.
 struct BrightnessSums {
   void add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight, simd::Float8 intensity);
   [[nodiscard]] Eigen::Matrix2d information() const;
@@ -60,31 +60,30 @@ struct BrightnessSums {
   std::array<JacobianLanes, 2> by_pose_{};
 };
 
-/// Eq. 3: dI/dpose where a point in the camera frame projects into the image, with the image's slope there.
+/// Eq. 3: dI/dpose at the projection of a point in the camera frame, given the image gradient there.
 [[nodiscard]] JacobianLanes photometric_jacobian(const patches::PosedLanes& camera,
                                                  const simd::Points& point_camera, simd::Float8 dx,
                                                  simd::Float8 dy);
 
-/// A measured point and the model plane it was associated with, for eight pixels; the plane is the pixels'
-/// own.
+/// Measured points and the associated model planes of eight pixels; the plane is that of the pixel.
 struct PlanePairs {
   simd::Points point_imu;
   simd::Float8 sigma_m{};
   simd::Int8 valid{};
-  simd::Int8 landed{};           ///< on which pixel of the depth image, counted from 1; 0 = outside
-  simd::Float8 predicted_z_m{};  ///< depth of the points there
+  simd::Int8 landed{};           ///< pixel of the depth image, from 1 on; 0 = outside
+  simd::Float8 predicted_z_m{};  ///< predicted depth of the points
 };
 
 /// Eq. 4: n . (T_world_imu * point_imu - plane_point), metres.
 [[nodiscard]] simd::Float8 plane_residual(const patches::PosedLanes& camera, const PlanePairs& pairs,
                                           const patches::PixelLanes& planes);
-/// Its derivative by the pose.
+/// Derivative of plane_residual() with respect to the pose.
 [[nodiscard]] JacobianLanes plane_jacobian(const patches::PosedLanes& camera, const PlanePairs& pairs,
                                            const patches::PixelLanes& planes);
 
-/// When a measurement belongs to a model point, and how noisy it is.
+/// Limits of the association between a measurement and a model point, and the depth noise.
 struct AssociationGates {
-  /// `scale` is that of the noise's standard deviation.
+  /// scale: factor on the standard deviation of the depth noise.
   AssociationGates(const config::GeometricConfig& geometric, const config::DepthConfig& depth, double scale);
 
   float max_distance_m;
@@ -95,15 +94,15 @@ struct AssociationGates {
   preprocessing::DepthSigma depth_sigma;
 };
 
-/// Projective association: the measurement at the pixel where each model point lands, if distance, normals
-/// and incidence agree. `before`: the pairs of the same points and image at another pose, or none. They are
-/// reused while all eight points project to the same pixels, with depths unchanged to a tenth of the largest
-/// distance: the measurement is the same and the gates have hardly changed.
+/// Projective association: pairs each model point with the measurement at its projected pixel, if distance,
+/// normals and incidence are within the limits. `before`: pairs of the same points and image at another pose,
+/// or null. They are reused if all eight points project to the same pixels and their depths differ by less
+/// than a tenth of the largest distance.
 [[nodiscard]] PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLanes& pixels,
                                    const DepthImage& depth_m, const AssociationGates& gates,
                                    const PlanePairs& before = {});
 
-// Inline: run for all pixels of all patches.
+// Inline, since they run for all pixels of all patches.
 
 inline void QuadraticSums::add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight,
                                simd::Float8 cost) {
@@ -134,7 +133,7 @@ inline RobustLanes huber(simd::Float8 whitened, float k) {
 
 inline void BrightnessSums::add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight,
                                 simd::Float8 intensity) {
-  // By gain and offset: -intensity and -1.
+  // Derivatives with respect to gain and offset: -intensity and -1.
   const simd::Float8 by_gain = -weight * intensity;
   information_[0] = simd::multiply_add(-by_gain, intensity, information_[0]);
   information_[1] -= by_gain;
@@ -149,8 +148,8 @@ inline void BrightnessSums::add(const JacobianLanes& jacobian, simd::Float8 resi
 
 inline JacobianLanes photometric_jacobian(const patches::PosedLanes& camera, const simd::Points& point_camera,
                                           simd::Float8 dx, simd::Float8 dy) {
-  // By the point in the camera: the image's slope times the projection's derivative. X_c = R_ci (R_wi^T (P -
-  // p_wi) - p_ic): turning the IMU by phi moves X_c by R_ci [X_i]x phi.
+  // Chain rule: image gradient times projection derivative times dX_c/dpose. X_c = R_ci (R_wi^T (P - p_wi) -
+  // p_ic), and a rotation phi of the IMU moves X_c by R_ci [X_i]x phi.
   const simd::Float8 inverse_z = 1.0F / point_camera.z;
   const simd::Float8 by_x = dx * camera.fx_px * inverse_z;
   const simd::Float8 by_y = dy * camera.fy_px * inverse_z;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxSteps = 20;
 constexpr double kConvergedPx = 0.01;
 
-/// Eight pixels at the translation, and which of them count there.
+/// Eight translated pixels and their validity.
 struct MovedPixels {
   MovedPixels(const patches::WarpedLanes& warped, const Eigen::Vector2f& by_px, const GreyImage& image)
       : x(warped.x + by_px.x()), y(warped.y + by_px.y()) {
@@ -23,7 +23,7 @@ struct MovedPixels {
   simd::Int8 inside;
 };
 
-/// The Gauss-Newton step on one level, pixels of the level; zero where the patch has no texture.
+/// Gauss-Newton step on one level (pixels of the level); zero if the patch has no texture.
 Vector2d step_px(const PlacedPatch& patch, const Eigen::Vector2f& at_px) {
   simd::Float8 xx{}, xy{}, yy{}, xr{}, yr{};
   for (std::size_t i = 0; i < patch.warped.size(); ++i) {
@@ -44,7 +44,8 @@ Vector2d step_px(const PlacedPatch& patch, const Eigen::Vector2f& at_px) {
   Eigen::Matrix2d normal;
   normal << simd::sum_of_lanes(xx), simd::sum_of_lanes(xy), simd::sum_of_lanes(xy), simd::sum_of_lanes(yy);
   const double trace = normal.trace();
-  // An edge holds a patch across itself only: the smaller eigenvalue is then a rounding error of the larger.
+  // An edge constrains the translation in one direction only: the smaller eigenvalue is then a rounding error
+  // of the larger.
   if (!(normal.determinant() > 1e-6 * trace * trace)) return Vector2d::Zero();
   return -normal.inverse() * Vector2d(simd::sum_of_lanes(xr), simd::sum_of_lanes(yr));
 }

@@ -1,5 +1,5 @@
-// A patch is found by a translation of its own in the image, as trackers of features do (Lucas & Kanade 1981,
-// coarse to fine as Bouguet 2000), not by the pose that all patches agree on.
+// Tracks a patch by its own translation in the image (Lucas & Kanade 1981, coarse to fine as in Bouguet
+// 2000), independently of the common pose.
 #pragma once
 
 #include <span>
@@ -10,19 +10,19 @@
 
 namespace fusebench::measurement {
 
-/// A patch at one pyramid level, where a prediction puts it.
+/// A patch at one pyramid level, at its predicted position.
 struct PlacedPatch {
   std::span<const patches::PixelLanes> pixels;
   std::span<const patches::WarpedLanes> warped;
   const GreyImage& image;
 };
 
-/// The translation, pixels of level 0, that makes the sum of squared differences of grey levels least: from
-/// no translation, by Gauss-Newton steps on each level from the coarsest (the last) on. Zero of a patch
-/// without visible pixels; the steps end where the patch has no texture in some direction.
+/// The translation (pixels of level 0) with the least sum of squared grey differences. Gauss-Newton steps
+/// from zero, on each level from the coarsest (the last) on. Zero for a patch without visible pixels. The
+/// steps end if the patch lacks texture in some direction.
 [[nodiscard]] Vector2d own_translation_px(std::span<const PlacedPatch> levels);
 
-/// Moves the pixels of a level; those that leave the image are no longer visible.
+/// Moves the pixels of a level; pixels that leave the image become invisible.
 void translate(std::span<patches::WarpedLanes> warped, const Vector2d& by_px, const GreyImage& image);
 
 }  // namespace fusebench::measurement

@@ -1,4 +1,4 @@
-// A hypothesis of the poses, as all patches are measured at it.
+// A pose hypothesis for the measurement of all patches.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace fusebench::measurement {
 
-/// Patches per task: fixed, so that the chunks do not depend on the number of threads.
+/// Patches per task: fixed, so the chunks do not depend on the number of threads.
 inline constexpr std::size_t kPatchesPerChunk = 8;
 
 struct PatchMeasurement::PosedLevels {
@@ -22,7 +22,7 @@ struct PatchMeasurement::PosedLevels {
                       origin_world);
     }
   }
-  std::vector<patches::PosedLanes> at;  ///< by reference
+  std::vector<patches::PosedLanes> at;  ///< relative to the reference frame
   patches::PosedLanes by_model;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 double followed(double scale, double robust_sum, int residuals, double huber_sigmas, double share) {
   if (residuals == 0) return scale;
-  // For standard normal r the mean of min(r^2, k |r|) is the probability of |r| < k.
+  // For standard normal r, the mean of min(r^2, k |r|) is the probability of |r| < k.
   const double expected = std::erf(huber_sigmas / std::numbers::sqrt2);
   const double variance_ratio = robust_sum / residuals / expected;
   const double moved = scale * std::sqrt(1.0 + share * (variance_ratio - 1.0));

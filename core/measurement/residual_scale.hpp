@@ -1,5 +1,5 @@
-// Standard deviations of residuals, estimated from earlier frames. They differ between sensors and scenes
-// (noise, texture, blur), and robust weights and the chi-square gate need them.
+// Standard deviations of residuals, estimated from earlier frames. They depend on sensor and scene (noise,
+// texture, blur). Robust weights and the chi-square gate use them.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ struct ResidualScale {
   double geometric = 1;
 };
 
-/// Moves the scale towards the estimate from the accepted patches of a frame, by iekf.scale_share: the one
-/// for which the mean of min(r^2, k |r|) is that of normal residuals (in the manner of Huber's Proposal 2,
-/// 1964), so that outliers count little. Stays within a factor of kMaxScale of the configuration.
+/// Moves the scale by iekf.scale_share towards the estimate from the accepted patches of a frame. The
+/// estimate equates the mean of min(r^2, k |r|) with that of normal residuals (similar to Huber's Proposal 2,
+/// 1964), so outliers have little weight. Limited to a factor of kMaxScale.
 [[nodiscard]] ResidualScale followed_scale(const ResidualScale& scale, std::span<const PatchOutcome> outcomes,
                                            const config::IekfConfig& iekf,
                                            const config::PhotometricConfig& photometric,

@@ -15,7 +15,7 @@ Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
     return fail(ErrorCode::usage, fmt::format("{}: a folder, where a mesh is needed", file.string()),
-                "of a run it is mesh.ply; of a simulated recording the truth is scene.ply");
+                "of a run it is mesh.ply; of a simulated recording the ground truth is scene.ply");
   }
   const std::string ending = io::lower_case(file.extension().string());
   if (ending == ".ply") return read_ply(file);

@@ -10,8 +10,7 @@ namespace {
 
 static_assert(tsdf::kBlockSide == simd::kLanes, "a row of a block is one vector");
 
-// Change of the distance from one voxel to the next at the middle of three; the outer ones may be unobserved
-// (NaN).
+// Change of the distance per voxel at the middle of three voxels; the outer ones may be unobserved (NaN).
 double slope(float before_m, float centre_m, float after_m) {
   const bool has_before = !std::isnan(before_m);
   const bool has_after = !std::isnan(after_m);
@@ -34,7 +33,8 @@ void BlockSurroundings::load(const tsdf::BlockIndex& index) {
   }
 }
 
-// From the block before to the one behind; of one that is not there, slot -1 is read: nothing observed.
+// Copies a row from the previous, the own and the next block. For a missing block (slot -1) all voxels are
+// unobserved.
 void BlockSurroundings::load_row(int y, int z) {
   const std::size_t row = tsdf::offset_in_block({0, y, z});
   const auto block_row_m = [&](int x) {

@@ -1,4 +1,4 @@
-// A contiguous copy of the field in and around one block.
+// Contiguous copy of the field in and around one block.
 #pragma once
 
 #include <array>
@@ -9,22 +9,22 @@
 
 namespace fusebench::meshing {
 
-/// Distances of a block's voxels and of those around it, copied once so that neighbours need no lookup.
+/// Distances of the voxels of a block and its surroundings, copied once to avoid lookups of neighbours.
 class BlockSurroundings {
  public:
   explicit BlockSurroundings(const tsdf::TsdfVolume& volume) : volume_(volume), slots_(volume) {}
 
-  /// Copies from one voxel before the block to two behind it on each axis.
+  /// Copies from one voxel before to two voxels after the block, on each axis.
   void load(const tsdf::BlockIndex& index);
 
-  /// Distance (metres, NaN = never observed) at a voxel by its place in the block, from -1 to kBlockSide + 1
-  /// on each axis.
+  /// Distance (metres, NaN = never observed) at a voxel of the block, index -1 to kBlockSide + 1 on each
+  /// axis.
   [[nodiscard]] float distance_m(const tsdf::VoxelIndex& local) const { return distances_m_[place(local)]; }
-  /// Colour there as it is stored (BlockVoxels), from 0 on; 0 where no block is allocated.
+  /// Stored colour (BlockVoxels) at a voxel, index 0 on; 0 if no block is allocated.
   [[nodiscard]] std::uint32_t color(const tsdf::VoxelIndex& local) const;
-  /// Gradient of the field (metres of distance per voxel) at a voxel by its place in the block, from 0 to
-  /// kBlockSide on each axis: central differences, one-sided next to unobserved voxels, 0 along an axis where
-  /// both neighbours are unobserved. The voxel itself must be observed.
+  /// Gradient of the field (metres of distance per voxel) at a voxel, index 0 to kBlockSide on each axis:
+  /// central differences, one-sided next to unobserved voxels, 0 along an axis with two unobserved
+  /// neighbours. The voxel itself must be observed.
   [[nodiscard]] Vector3d gradient(const tsdf::VoxelIndex& local) const;
 
  private:

@@ -20,21 +20,21 @@ namespace {
 
 constexpr std::size_t kBlocksPerChunk = 16;
 
-// An edge of the lattice as a block sees it: which of the eight blocks at its upper corner has the edge's
-// lower end * kNeighbourEdges + offset of that end in it * 3 + axis.
+// Number of a lattice edge relative to a block. n: which of the eight blocks at the upper corner has the
+// edge's lower end; the number is n * kNeighbourEdges + offset of the end in its block * 3 + axis.
 using LocalEdge = std::uint16_t;
 using EdgeTriangle = std::array<LocalEdge, 3>;
 constexpr std::size_t kNeighbourEdges = 2048;
 static_assert(kBlockEdges <= kNeighbourEdges && 8 * kNeighbourEdges <= 65536);
 
-// The triangles of some blocks.
+// Triangles of a chunk of blocks.
 struct Surface {
-  // One that has triangles.
+  // A non-empty block.
   struct Block {
     std::array<std::uint32_t, 8> neighbour_ranks{};
     std::size_t triangles_end = 0;
   };
-  // Calls visit(rank of the block that has the edge, edge in it) for each corner of each triangle.
+  // Calls visit(rank of the block of the edge, edge in it) for each corner of each triangle.
   template <class Visit>
   void for_each_corner(const Visit& visit) const {
     std::size_t i = 0;
@@ -47,7 +47,7 @@ struct Surface {
   }
 
   std::vector<Block> blocks;
-  std::vector<EdgeTriangle> triangles;  // one block after the other
+  std::vector<EdgeTriangle> triangles;  // concatenated, block by block
 };
 
 // The lowest bit of byte i is bit i of `bits`.
@@ -62,7 +62,7 @@ std::uint64_t byte_each(unsigned bits) {
   return kTable[bits];
 }
 
-// The blocks by index (z, then y, then x), so that a mesh does not depend on the order of storage.
+// Blocks sorted by index (z, then y, then x), so that a mesh does not depend on the storage order.
 struct SortedBlocks {
   explicit SortedBlocks(const tsdf::TsdfVolume& volume)
       : slots(volume.block_count()), ranks(volume.block_count()) {
@@ -80,7 +80,7 @@ struct SortedBlocks {
   std::vector<std::uint32_t> ranks;  // by slot
 };
 
-// Triangles of the cells whose lower corner lies in one block.
+// Triangles of the cells whose lower corner is in one block.
 class BlockCells {
  public:
   BlockCells(const tsdf::TsdfVolume& volume, const SortedBlocks& sorted, double min_weight)
@@ -104,7 +104,7 @@ class BlockCells {
 
  private:
   static constexpr std::size_t kSide =
-      tsdf::kBlockSide + 1;  // the upper corners of the last cells: the next block
+      tsdf::kBlockSide + 1;  // includes the upper corners of the last cells, in the next block
   static constexpr std::size_t kSlice = kSide * kSide;
   static constexpr std::array<std::size_t, 8> kCorner = {
       0, 1, kSide, kSide + 1, kSlice, kSlice + 1, kSlice + kSide, kSlice + kSide + 1};
@@ -119,13 +119,13 @@ class BlockCells {
     sign_.fill(0);
     for (std::size_t n = 0; n < 8; ++n) {
       const int slot = slots_.find(index + tsdf::BlockIndex(n & 1 ? 1 : 0, n & 2 ? 1 : 0, n & 4 ? 1 : 0));
-      // Edges of a missing block are never used: its voxels are unobserved.
+      // A missing block has no used edges, since its voxels are unobserved.
       neighbour_ranks_[n] = slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
       if (slot >= 0) load_neighbour(n, static_cast<std::size_t>(slot));
     }
   }
 
-  // The signs of the voxels of a block at the corners of the cells: all of its own, a layer of the others.
+  // Loads the signs at the corners of the cells: all voxels of the own block, one layer of the neighbours.
   void load_neighbour(std::size_t n, std::size_t slot) {
     const auto range = [&](std::size_t bit) -> std::size_t { return (n & bit) != 0 ? 1 : tsdf::kBlockSide; };
     const simd::Half* const distances_m = volume_.distances_m() + slot * tsdf::kBlockVoxels;
@@ -142,7 +142,7 @@ class BlockCells {
     }
   }
 
-  // Most blocks have voxels on one side only.
+  // Fast rejection: most blocks have voxels on one side only.
   [[nodiscard]] bool has_both_signs() const {
     std::uint8_t inside = 0;
     std::uint8_t outside = 0;
@@ -162,9 +162,9 @@ class BlockCells {
     return byte_each(simd::lane_bits(seen)) | byte_each(simd::lane_bits(seen & (distance_m < 0.0F))) << 1;
   }
 
-  // The cells of a row, a byte each.
+  // A row of cells, one byte each.
   struct Row {
-    std::uint64_t crossed;   // 1: all corners are observed, and they have both signs
+    std::uint64_t crossed;   // 1: all corners are observed, with both signs
     std::uint64_t patterns;  // bit c: corner c is inside
   };
   [[nodiscard]] Row crossed_cells(int y, int z) const {
@@ -185,7 +185,7 @@ class BlockCells {
 
   void append_cell(const tsdf::VoxelIndex& base, std::size_t pattern,
                    std::vector<EdgeTriangle>& triangles) const {
-    if (base.maxCoeff() < tsdf::kBlockSide - 1) {  // all edges are the block's own: two of three cells
+    if (base.maxCoeff() < tsdf::kBlockSide - 1) {  // all edges belong to the own block: two of three cells
       const auto first = static_cast<LocalEdge>(3 * tsdf::offset_in_block(base));
       for (const CellTriangle& triangle : triangles_[pattern]) {
         triangles.push_back(
@@ -209,7 +209,7 @@ class BlockCells {
     return static_cast<LocalEdge>(neighbour_of(local) * kNeighbourEdges + tsdf::offset_in_block(local) * 3 +
                                   edge.axis);
   }
-  // From the first edge of a cell's lowest corner to each of the cell's, where they are of one block.
+  // Offsets from the first edge of the lowest corner of a cell to its edges, if all belong to one block.
   static std::array<LocalEdge, 12> edge_offsets() {
     std::array<LocalEdge, 12> offsets{};
     for (std::uint8_t edge = 0; edge < offsets.size(); ++edge) offsets[edge] = local_edge({0, 0, 0}, edge);

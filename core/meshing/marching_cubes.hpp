@@ -7,11 +7,11 @@
 
 namespace fusebench::meshing {
 
-/// Indexed mesh in the world frame: each lattice edge that the surface crosses gives exactly one vertex, with
-/// colour (no colours at all if no frame had any; black where only this place has none) and the unit gradient
-/// as normal; triangles are counter-clockwise seen from free space. Cells with a voxel that was not observed,
-/// or whose weight is below min_weight, are left open. Vertex and triangle order depend on the field alone
-/// (blocks sorted by index), not on storage or threads.
+/// Extracts an indexed mesh in the world frame. Each lattice edge that crosses the surface has exactly one
+/// vertex, with the unit gradient as its normal and with a colour (black if none was observed there; no
+/// colours at all if no frame had any). Triangles are counter-clockwise seen from free space. Cells with an
+/// unobserved voxel or a weight below min_weight are left open. The order of vertices and triangles depends
+/// on the field only (blocks sorted by index), not on storage or threads.
 [[nodiscard]] Mesh extract_mesh(const tsdf::TsdfVolume& volume, double min_weight, const Workers& workers);
 
 }  // namespace fusebench::meshing

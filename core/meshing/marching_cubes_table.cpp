@@ -22,7 +22,7 @@ std::uint8_t edge_between(unsigned a, unsigned b) {
   throw InternalError("two corners of a cell without an edge");
 }
 
-// The corners of a face, counter-clockwise seen from outside the cell.
+// The corners of a face, counter-clockwise from outside the cell.
 std::array<unsigned, 4> face_corners(unsigned axis, bool upper) {
   const unsigned u = 1U << (axis + 1) % 3;
   const unsigned v = 1U << (axis + 2) % 3;
@@ -31,8 +31,9 @@ std::array<unsigned, 4> face_corners(unsigned axis, bool upper) {
   return {w, w | v, w | u | v, w | u};
 }
 
-// Follows the boundary of each face and joins the edge where it enters the inside with the next one where it
-// leaves: the outline of the surface on the faces as a successor of each crossed edge.
+// Traces the outline of the surface on the faces. Entry e: the crossed edge that follows edge e in the
+// outline. On each face, an edge where the boundary enters the inside is followed by the next one where it
+// leaves.
 std::array<std::uint8_t, 12> outline(unsigned pattern) {
   std::array<std::uint8_t, 12> next{};
   next.fill(kNoEdge);
@@ -63,8 +64,8 @@ bool share_a_face(std::uint8_t a, std::uint8_t b) {
   return false;
 }
 
-// Cuts a polygon into triangles whose inner edges avoid the faces, by trying all apexes over the side (first,
-// last).
+// Triangulates a polygon beyond the side (first, last) such that no inner edge is in a face, by trying all
+// apexes.
 bool triangulate(std::span<const std::uint8_t> polygon, std::vector<CellTriangle>& triangles) {
   if (polygon.size() < 3) return true;
   const std::size_t last = polygon.size() - 1;

@@ -1,4 +1,4 @@
-// Triangles of one cell of marching cubes for each of the 256 patterns of signs, derived from one rule.
+// Triangles of a marching-cubes cell for each of the 256 sign patterns, derived from one rule.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ struct CellEdge {
 };
 [[nodiscard]] const std::array<CellEdge, 12>& cell_edges();
 
-/// Three numbers of edges, counter-clockwise seen from the positive side.
+/// Numbers of three edges, counter-clockwise from the positive side.
 using CellTriangle = std::array<std::uint8_t, 3>;
 
 /// Triangles by pattern (bit c set: corner c is inside, distance < 0).
 ///
-/// Rule: on a face whose signs alternate, the inside corners are cut off one by one. It looks at the face
-/// alone, so the two cells at a face always agree and the surface has no cracks (Duerst 1988 describes what
-/// happens otherwise). No triangle has an inner edge that lies in a face, where the neighbour could repeat
-/// it, so that each edge of the surface belongs to at most two triangles.
+/// Rule: on a face with alternating signs, the inside corners are separated. The rule depends on the face
+/// alone, so both cells at a face agree and the surface has no cracks (Duerst 1988 describes the cracks of
+/// other rules). No triangle has an inner edge in a face, where the neighbour could have the same edge. Each
+/// edge of the surface therefore belongs to at most two triangles.
 [[nodiscard]] const std::array<std::vector<CellTriangle>, 256>& cell_triangles();
 
 }  // namespace fusebench::meshing

@@ -6,8 +6,8 @@
 namespace fusebench::meshing {
 namespace {
 
-// Colour between two voxels (BlockVoxels); a voxel without colour takes the other's. False if neither has
-// one.
+// Interpolates colours of two voxels (BlockVoxels). If one has none, takes that of the other. False if
+// neither has one.
 bool blend(std::uint32_t low, std::uint32_t high, float share, Rgb& color) {
   constexpr int kCountByte = 24;
   const std::uint32_t from = low >> kCountByte != 0 ? low : high;
@@ -25,7 +25,7 @@ class VertexWriter {
   VertexWriter(const tsdf::TsdfVolume& volume, Mesh& mesh)
       : voxel_m_(volume.voxel_m()), surroundings_(volume), mesh_(mesh) {}
 
-  // Those of one block. True if any has a colour.
+  // Writes the vertices of one block. True if any has a colour.
   bool write(const tsdf::BlockIndex& block, const BlockVertices& vertices) {
     if (!vertices.any()) return false;
     surroundings_.load(block);
@@ -43,7 +43,7 @@ class VertexWriter {
   }
 
  private:
-  // The vertex on the edge that leaves a voxel along an axis. True if it has a colour.
+  // Writes the vertex on the edge from a voxel along an axis. True if it has a colour.
   bool write_vertex(const tsdf::BlockIndex& block, const tsdf::VoxelIndex& local, Eigen::Index axis,
                     std::size_t vertex) {
     const tsdf::VoxelIndex index = block * tsdf::kBlockSide + local;

@@ -1,4 +1,4 @@
-// Vertices of a mesh from the model: one on each edge of the lattice that the surface crosses.
+// Vertices of a mesh: one on each lattice edge that crosses the surface.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace fusebench::meshing {
 
-/// Each voxel owns the three edges that leave it upwards: number 3 * offset_in_block + axis.
+/// Each voxel owns the edges to its upper neighbours: number 3 * offset_in_block + axis.
 inline constexpr std::size_t kBlockEdges = 3 * tsdf::kBlockVoxels;
 
-/// The used edges of one block, and the number of the vertex on each.
+/// Used edges of one block with the numbers of their vertices.
 struct BlockVertices {
   static constexpr std::size_t kWords = kBlockEdges / 64;
   std::array<std::uint64_t, kWords> used{};
-  std::array<std::uint32_t, kWords> before{};  // vertices on all earlier edges
+  std::array<std::uint32_t, kWords> before{};  // number of vertices on earlier edges
 
   [[nodiscard]] bool any() const {
     return std::any_of(used.begin(), used.end(), [](std::uint64_t word) { return word != 0; });
@@ -37,8 +37,8 @@ struct BlockVertices {
   }
 };
 
-/// Writes the vertices of blocks (places among those of the volume, and the numbers of their vertices) into a
-/// mesh that has room for them. True if any has a colour.
+/// Writes the vertices of blocks into a mesh of sufficient size. slots: of the blocks in the volume. True if
+/// any vertex has a colour.
 bool write_vertices(const tsdf::TsdfVolume& volume, std::span<const std::size_t> slots,
                     std::span<const BlockVertices> vertices, Mesh& mesh);
 

@@ -17,7 +17,7 @@ struct Corner {
   int cell = 0;
 };
 
-/// Grid of square cells with about one cell a patch.
+/// Grid of square cells, about one for each patch.
 struct Grid {
   Grid(const GreyImage& grey, int cells) {
     const double area = static_cast<double>(grey.width) * grey.height / std::max(1, cells);
@@ -42,7 +42,7 @@ std::vector<Corner> detect(const GreyImage& grey, const Grid& grid, const config
     if (patch_fits(grey, pixel, config.size_px))
       corners.push_back({pixel, keypoint.response, grid.cell(pixel)});
   }
-  // A total order: the result must not depend on the order of the detector.
+  // Total order, so that the result does not depend on the order of the detector.
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::make_tuple(-a.score, a.pixel.y(), a.pixel.x()) <
            std::make_tuple(-b.score, b.pixel.y(), b.pixel.x());
@@ -84,7 +84,8 @@ std::vector<Eigen::Vector2i> select_corners(const GreyImage& grey, const DepthIm
     return std::none_of(taken.begin(), taken.end(),
                         [&](const Eigen::Vector2i& q) { return (p - q).squaredNorm() < reach; });
   };
-  // First one a cell, so that they spread; then wherever the strongest corners are.
+  // First pass: one corner in each cell, for an even distribution. Second pass: the strongest remaining
+  // corners.
   for (const bool one_per_cell : {true, false}) {
     for (const Corner& corner : corners) {
       if (static_cast<int>(taken.size()) >= config.max_count) break;

@@ -6,7 +6,7 @@ namespace fusebench::patches {
 
 namespace {
 
-/// Unit, in the camera's frame, towards the camera.
+/// Unit normal in the camera frame, towards the camera.
 std::optional<Vector3d> measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x,
                                         int y) {
   const auto at = [&](int u, int v) -> std::optional<Vector3d> {
@@ -18,7 +18,7 @@ std::optional<Vector3d> measured_normal(const DepthImage& depth_m, const Pinhole
   const auto up = at(x, y - kNormalReach_px);
   const auto down = at(x, y + kNormalReach_px);
   if (!left || !right || !up || !down) return std::nullopt;
-  // y points down, so down x across looks back at the camera.
+  // y points down, so down x across points towards the camera.
   const Vector3d normal = (*down - *up).cross(*right - *left);
   const double length = normal.norm();
   if (!(length > 0)) return std::nullopt;

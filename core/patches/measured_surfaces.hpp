@@ -1,4 +1,4 @@
-// The measured surface behind pixels of a frame: what a patch is made of if it does not take the model's.
+// Measured surfaces at pixels of a frame, for patches that do not use the model's surface.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace fusebench::patches {
 
-/// Normals of measured depth are differences over this many pixels either way, since neighbouring pixels of
-/// structured-light depth share their disparity step.
+/// Normals are differences of depth over this many pixels to either side, since neighbouring pixels of
+/// structured-light depth share a disparity step.
 inline constexpr int kNormalReach_px = 4;
 
-/// One surface a pixel: its measured depth, and the normal of the depth image around it. Invalid where
-/// nothing was measured; the normal is zero where a neighbour that it takes is missing.
+/// One surface for each pixel: its measured depth and the normal of the depth image. Invalid without a
+/// measurement. The normal is zero if a required neighbour is missing.
 [[nodiscard]] std::vector<raycast::SurfacePoint> measured_surfaces(
     const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera,
     std::span<const raycast::ExpectedSurface> pixels);

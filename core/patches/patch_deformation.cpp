@@ -15,16 +15,16 @@ namespace fusebench::patches {
 
 namespace {
 
-/// Level-0 coordinates of a pixel from its key.
+/// Level-0 coordinates from the key of a pixel.
 Vector2d reference_coordinates(const PatchPixel& pixel, const PinholeCamera& camera) {
   const auto width = static_cast<std::uint32_t>(camera.width_px);
   return {static_cast<double>(pixel.reference_pixel % width),
           static_cast<double>(pixel.reference_pixel / width)};
 }
 
-/// The model point nearest to the patch centre at level 0, within one pixel of it.
+/// The model point nearest to the patch centre at level 0, at most one pixel away.
 std::optional<Vector3d> centre_point_world(const Patch& patch, const PinholeCamera& camera) {
-  double nearest = 2.1;  // squared pixels: the four or eight neighbours of the centre may replace it
+  double nearest = 2.1;  // squared pixels: a neighbour (of four or eight) may replace the centre
   std::optional<Vector3d> result;
   for (const PatchPixel& pixel : patch.levels.front().pixels) {
     const double distance =
@@ -37,8 +37,7 @@ std::optional<Vector3d> centre_point_world(const Patch& patch, const PinholeCame
   return result;
 }
 
-/// Least-squares plane of the patch at level 0. In a pinhole image a plane is affine in inverse depth: 1/z =
-/// a u + b v + c.
+/// Least-squares plane of the patch at level 0. In a pinhole image, 1/z = a u + b v + c for a plane.
 std::optional<Vector3d> inverse_depth_plane(const Patch& patch, const PinholeCamera& camera,
                                             const SE3& T_camera_world) {
   Matrix3d normal = Matrix3d::Zero();
@@ -50,7 +49,7 @@ std::optional<Vector3d> inverse_depth_plane(const Patch& patch, const PinholeCam
     right += row / (T_camera_world * pixel.point_world).z();
   }
   const Eigen::LDLT<Matrix3d> solver(normal);
-  // Fewer than three pixels, or all in a line, do not make a plane.
+  // Fewer than three pixels, or collinear ones, do not determine a plane.
   if (solver.info() != Eigen::Success || solver.vectorD().minCoeff() < 1e-6) return std::nullopt;
   return solver.solve(right);
 }
@@ -76,7 +75,7 @@ void warp_by_plane(Patch& patch, const PinholeCamera& camera, const SE3& T_world
       const Vector2d place = reference_coordinates(pixel, camera);
       const Vector2d offset = place - patch.centre_px.cast<double>();
       const double inverse_depth = plane->dot(Vector3d(offset.x(), offset.y(), 1.0));
-      if (inverse_depth <= 0) continue;  // the plane passes behind the camera here
+      if (inverse_depth <= 0) continue;  // the plane is behind the camera here
       level.warp_points.push_back(
           {T_world_camera * camera.back_project(place.x(), place.y(), 1.0 / inverse_depth),
            Vector2d::Zero()});
@@ -105,7 +104,7 @@ void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_wor
 
 void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
                 const PosedLanes& camera, std::span<WarpedLanes> warped) {
-  constexpr float kMinDepthM = 0.05F;  // the projection of closer points is ill-conditioned
+  constexpr float kMinDepthM = 0.05F;  // closer points have an ill-conditioned projection
   const auto right = static_cast<float>(camera.width_px - 2);
   const auto bottom = static_cast<float>(camera.height_px - 2);
   for (std::size_t i = 0; i < warped.size(); ++i) {
@@ -130,7 +129,7 @@ void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLan
 
 namespace {
 
-/// Number of the nearest pixel of an image; 0 where `inside` does not hold.
+/// Index of the nearest pixel; 0 if `inside` is false.
 simd::Int8 nearest_pixel(simd::Float8 x, simd::Float8 y, int width_px, simd::Int8 inside) {
   return inside ? simd::to_int(y + 0.5F) * width_px + simd::to_int(x + 0.5F) : simd::Int8{};
 }
@@ -154,8 +153,8 @@ void MutualOcclusion::test(std::span<WarpedLanes> warped, const config::DepthCon
     }
   };
   for_cells_in_image([](float& nearest_m, float depth_m) { nearest_m = std::min(nearest_m, depth_m); });
-  // Pixels of one surface also collide, when the camera backs away: a clear difference in depth is an
-  // occlusion.
+  // Pixels of one surface also collide when the camera moves backwards. Only a clear difference in depth is
+  // an occlusion.
   const bool any = rule == config::ShrinkTest::any_collision;
   const float sigmas = any ? 0.0F : 3.0F;
   const auto jump = any ? 0.0F : static_cast<float>(depth.edge_jump);
@@ -180,7 +179,7 @@ void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& de
     const simd::Int8 inside = w.visible & (x < right) & (y < bottom);
     const simd::Float8 measured_m =
         simd::gather(depth_m.data.data(), nearest_pixel(x, y, depth_m.width, inside));
-    // Without a measurement there is no test.
+    // A pixel without a measurement is not tested.
     const simd::Int8 judged = inside & (measured_m > 0.0F);
     const simd::Float8 allowed_m = simd::max(simd::all_lanes(static_cast<float>(tolerance_m)),
                                              3.0F * preprocessing::depth_sigma_m(measured_m, depth));
@@ -206,9 +205,9 @@ bool is_extended(std::span<const WarpedLanes> warped, int size_px) {
       from = std::min(from, low[lane]);
       to = std::max(to, high[lane]);
     }
-    return to - from;  // negative if nothing is visible
+    return to - from;  // negative if no pixel is visible
   };
-  // Pixel centres of the square span size - 1; a whole pixel more is an extension.
+  // The pixel centres of the square span size - 1; an extension is at least one pixel more.
   return std::max(extent(left, right), extent(top, bottom)) >= static_cast<float>(size_px);
 }
 

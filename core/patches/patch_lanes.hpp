@@ -1,6 +1,5 @@
-// Patches in the memory layout of the update: eight pixels of a patch at a time, single precision,
-// coordinates relative to the camera that the patches were cut with, so that rounding stays below the noise
-// of the measurements.
+// Patches in the memory layout of the update: eight pixels at a time, in single precision. Coordinates are
+// relative to the reference camera, so the rounding error is below the measurement noise.
 #pragma once
 
 #include <span>
@@ -35,43 +34,43 @@ struct PosedLanes {
   Eigen::Matrix3f R_imu_camera;
   Eigen::Vector3f t_imu_camera_m;
   Eigen::Matrix3f R_world_imu;
-  Eigen::Vector3f t_world_imu_m;  ///< from the origin
+  Eigen::Vector3f t_world_imu_m;  ///< relative to the origin
 };
 
-/// Eight pixels of one level of a patch (PatchPixel). Lanes without a pixel repeat the last one.
+/// Eight pixels of one level of a patch (PatchPixel). Unused lanes repeat the last pixel.
 struct PixelLanes {
   simd::Points point;   ///< model surface
-  simd::Points normal;  ///< of it, world axes
+  simd::Points normal;  ///< of the model surface, world axes
   simd::Float8 intensity{};
-  simd::Int8 present{};          ///< there is a pixel
-  simd::Int8 depth_confirmed{};  ///< and its colour may be aligned by
+  simd::Int8 present{};          ///< lane is used
+  simd::Int8 depth_confirmed{};  ///< lane is used, and its colour is valid for alignment
 };
 
-/// What is projected in place of the points, if the deformation is not by pixel.
+/// Points that are projected instead of the surface points, if the deformation is not by pixel.
 struct WarpPointLanes {
   simd::Points point;
   simd::Float8 offset_x{};  ///< pixels of the level
   simd::Float8 offset_y{};
 };
 
-/// Eight pixels in the current frame (Eq. 2), in pixels of their level.
+/// Eight pixels in the current frame (Eq. 2), pixel coordinates of their level.
 struct WarpedLanes {
   simd::Float8 x{};
   simd::Float8 y{};
-  simd::Float8 depth_m{};  ///< z of the pixel's own surface point
-  simd::Int8 in_image{};   ///< in front of the camera and inside, with room to interpolate
+  simd::Float8 depth_m{};  ///< z of the surface point of the pixel
+  simd::Int8 in_image{};   ///< in front of the camera and inside the image, with the interpolation margin
   simd::Int8 visible{};    ///< in_image and not occluded
-  simd::Int8 covered{};    ///< in_image, and something nearer was measured there
+  simd::Int8 covered{};    ///< in_image, behind a nearer measured surface
 };
 
 /// One pyramid level of all patches.
 struct LevelLanes {
   std::vector<PixelLanes> pixels;
-  std::vector<WarpPointLanes> warp_points;  ///< one each, or empty if pixels move by their own points
+  std::vector<WarpPointLanes> warp_points;  ///< one each; empty if pixels use their own points
   std::vector<WarpedLanes> warped;          ///< one each
-  std::vector<std::size_t> first;           ///< of each patch, and the end
+  std::vector<std::size_t> first;           ///< index of the first entry of each patch, and the end
 
-  /// What is projected of eight pixels.
+  /// The points to project for eight pixels.
   [[nodiscard]] const simd::Points& projected(std::size_t eight) const {
     return warp_points.empty() ? pixels[eight].point : warp_points[eight].point;
   }
@@ -86,7 +85,7 @@ struct LevelLanes {
   }
 };
 
-/// Takes a level of all patches over into `lanes`, whose memory is used again.
+/// Copies a level of all patches to `lanes` and reuses its memory.
 void pack(std::span<const Patch> patches, std::size_t level, const Vector3d& origin_world, LevelLanes& lanes);
 
 }  // namespace fusebench::patches

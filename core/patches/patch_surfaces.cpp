@@ -29,7 +29,7 @@ std::span<const raycast::SurfacePoint> PatchSurfaces::find(
   return surfaces_;
 }
 
-/// Local search near the measured depth. Patches are independent of each other.
+/// Local search near the measured depth, parallel over patches.
 void PatchSurfaces::find_near_measurements(const raycast::SurfaceSearch& search,
                                            std::span<const raycast::ExpectedSurface> pixels,
                                            std::span<const std::size_t> first, const Workers& workers) {
@@ -52,7 +52,7 @@ void PatchSurfaces::find_near_measurements(const raycast::SurfaceSearch& search,
   });
 }
 
-/// A wider search where nothing was found.
+/// Wider search for pixels without a result.
 void PatchSurfaces::find_around(const raycast::SurfaceSearch& search,
                                 std::span<const raycast::ExpectedSurface> pixels, const Workers& workers) {
   expected_.clear();
@@ -70,7 +70,7 @@ void PatchSurfaces::find_around(const raycast::SurfaceSearch& search,
   for (std::size_t i = 0; i < places_.size(); ++i) surfaces_[places_[i]] = hits_[i];
 }
 
-/// Ray casting around the measured depth, or along the whole ray where there is none.
+/// Ray casting around the measured depth, or along the whole ray without one.
 void PatchSurfaces::walk_rays(const tsdf::TsdfLanes& field, const PinholeCamera& camera,
                               const SE3& T_world_camera, const config::DepthConfig& depth,
                               std::span<const raycast::ExpectedSurface> pixels, const Workers& workers) {

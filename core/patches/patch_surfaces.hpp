@@ -1,5 +1,5 @@
-// The model's surfaces behind the pixels of patches: near the measured depth, or along the ray where there is
-// no measurement.
+// Model surfaces at the pixels of patches: near the measured depth, or along the whole ray without a
+// measurement.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@
 
 namespace fusebench::patches {
 
-/// Finds them; buffers are reused from frame to frame.
+/// Searches the surfaces; the buffers are reused.
 class PatchSurfaces {
  public:
-  /// One surface a pixel, invalid where there is none; valid until the next call. `first`: number of the
-  /// first pixel of each patch, and the end. A pixel whose depth_m is 0 has no measurement.
+  /// One surface for each pixel, invalid if none was found; valid until the next call. `first`: index of the
+  /// first pixel of each patch, and the end. depth_m = 0: no measurement.
   [[nodiscard]] std::span<const raycast::SurfacePoint> find(
       const tsdf::TsdfVolume& model, const PinholeCamera& camera, const SE3& T_world_camera,
       const config::DepthConfig& depth, std::span<const raycast::ExpectedSurface> pixels,
@@ -44,8 +44,8 @@ class PatchSurfaces {
                  const Workers& workers);
 
   std::vector<raycast::SurfacePoint> surfaces_;
-  std::vector<Workspace> workspaces_;  // one a chunk of patches
-  // Pixels that were not found at once:
+  std::vector<Workspace> workspaces_;  // one for each chunk of patches
+  // Pixels that the local search did not find:
   std::vector<std::size_t> places_;
   std::vector<raycast::ExpectedSurface> expected_;
   std::vector<raycast::PixelRay> rays_;

@@ -19,13 +19,13 @@ namespace fusebench::patches {
 namespace {
 
 constexpr std::size_t kPatchesPerChunk = 8;
-constexpr std::size_t kMaxLevels = 6;  // of patches.levels
+constexpr std::size_t kMaxLevels = 6;  // limit of patches.levels
 
-/// Parameters of a loop over all squares of all patches.
+/// Geometry of the squares of all patches.
 struct Squares {
   /// The first pixel of a square.
   struct Corner {
-    int x = 0;  ///< level pixels
+    int x = 0;  ///< pixels of the level
     int y = 0;
   };
 
@@ -47,13 +47,13 @@ struct Squares {
   [[nodiscard]] std::size_t area() const {
     return static_cast<std::size_t>(size_px) * static_cast<std::size_t>(size_px);
   }
-  /// Place of the pixels of a square among those of all, by patch, level, row, column.
+  /// Index of the first pixel of a square among all pixels, ordered by patch, level, row, column.
   [[nodiscard]] std::size_t first(std::size_t patch, std::size_t level) const {
     return (patch * levels + level) * area();
   }
 
-  /// Search distance around the measured depth: a surface at the far limit of UsableSurface has more noise
-  /// than one at the measurement.
+  /// Search distance around the measured depth. The noise at the far limit of UsableSurface is larger than at
+  /// the measurement.
   [[nodiscard]] float reach_m(float measured_m) const {
     constexpr float kMargin = 1.5F;
     const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), options.depth);
@@ -67,11 +67,9 @@ struct Squares {
   std::size_t levels;
 };
 
-/// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
-/// once, since a coarse level's are partly those of a finer one. Where anything was measured in the finest
-/// square, coarse pixels without measured depth are left out: their colour would not be used
-/// (use_model_depth_in_holes), intensity errors are taken on the finest level, and a ray each is much work
-/// for the few that would find a plane in the next frame.
+/// Appends to `pixels` the level-0 pixels that the squares of a patch need, each once, since levels share
+/// pixels. If the finest square has any measured depth, coarse pixels without it are skipped: their colour is
+/// not used (use_model_depth_in_holes), and intensity errors use the finest level.
 void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
   const GreyImage& full = squares.frame.pyramid[0];
   const int size = squares.size_px;
@@ -85,7 +83,7 @@ void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work)
       for (int x = corner.x; x < corner.x + size; ++x, ++place) {
         std::int32_t& pixel = work.pixel_of[place];
         pixel = -1;
-        // A coarse square may reach over the border, and its last row beyond level 0's.
+        // A coarse square may cross the border, and its last row may be outside level 0.
         if (!image.contains(x, y) || !full.contains(x << l, y << l)) continue;
         const float measured_m = squares.frame.depth_m(x << l, y << l);
         if (l == 0) measured |= measured_m > 0;
@@ -109,7 +107,7 @@ bool takes_any_depth(const config::PatchConfig& config) {
   return config.reference_surface == config::ReferenceSurface::frame_ungated;
 }
 
-/// The surface behind a pixel, if it is usable there.
+/// Selects the usable surface of a pixel.
 class UsableSurface {
  public:
   UsableSurface(const ReferenceFrame& frame, const CutOptions& options)
@@ -145,8 +143,8 @@ class UsableSurface {
   double min_cosine_;
 };
 
-/// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
-/// without any lies in a hole, or the camera has no depth: there the model's surface is used.
+/// In a patch with measured depth, pixels without it are at an edge or in a shadow and are not used. A patch
+/// without any measured depth is in a hole or the camera has no depth; it uses the model's surface.
 void use_model_depth_in_holes(Patch& patch) {
   for (const PatchLevel& level : patch.levels) {
     for (const PatchPixel& pixel : level.pixels) {
@@ -158,7 +156,7 @@ void use_model_depth_in_holes(Patch& patch) {
   }
 }
 
-/// The grey levels of a square of level 0, 0 where it leaves the image (the patch is then dropped).
+/// Grey levels of a level-0 square; 0 outside the image (the patch is then dropped).
 void copy_square(const GreyImage& image, const Squares::Corner& corner, int size_px,
                  std::vector<std::uint8_t>& grey) {
   grey.clear();
@@ -168,7 +166,7 @@ void copy_square(const GreyImage& image, const Squares::Corner& corner, int size
   }
 }
 
-/// The pixels of a patch that have a usable surface.
+/// Sets the pixels of a patch that have a usable surface.
 void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usable,
                 const PatchWorkspace& work, std::span<const raycast::SurfacePoint> surfaces, Patch& patch) {
   const ReferenceFrame& frame = squares.frame;
@@ -182,7 +180,7 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
     std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
     pixels.clear();
     pixels.reserve(squares.area());
-    // A pixel of a coarse level is a mean over an area of about its own size.
+    // A coarse pixel is a mean over an area of about its own size.
     const int reach_px = l == 0 ? 0 : 1 << l;
     for (std::size_t i = 0; i < squares.area(); ++i) {
       const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
@@ -202,7 +200,7 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
   use_model_depth_in_holes(patch);
 }
 
-/// Of the pixels that the patches need.
+/// Surfaces at the pixels of the patches.
 std::span<const raycast::SurfacePoint> surfaces_of(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                                                    const CutOptions& options, const Workers& workers,
                                                    PatchWorkspace& work) {
@@ -213,7 +211,7 @@ std::span<const raycast::SurfacePoint> surfaces_of(const ReferenceFrame& frame, 
   return work.measured;
 }
 
-/// Patches with the pixels that have a usable surface.
+/// Cuts patches from the pixels with a usable surface.
 void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                  std::span<const TrackedCentre> centres, const CutOptions& options, const Workers& workers,
                  PatchWorkspace& work, std::vector<Patch>& patches) {
@@ -234,11 +232,11 @@ void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
   });
 }
 
-/// Survivors that are still inside the image and separated from each other, oldest first.
+/// Survivors inside the image that are separated from each other, oldest first.
 std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survivors,
                                             const ReferenceFrame& frame, const config::PatchConfig& config) {
   std::vector<TrackedCentre> kept;
-  // Patches drift towards each other; half the detection distance keeps their squares from overlapping.
+  // Patches drift towards each other. Half the detection distance prevents overlap.
   const double reach = std::max(0.5 * config.min_distance_px, static_cast<double>(config.size_px));
   for (const TrackedCentre& candidate : survivors) {
     const Eigen::Vector2i pixel(static_cast<int>(std::lround(candidate.pixel_px.x())),
@@ -252,7 +250,7 @@ std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survi
   return kept;
 }
 
-/// Whether there is a depth at the pixel that a point falls on.
+/// True if the pixel of a point has a measured depth.
 bool is_measured(const ReferenceFrame& frame, const Vector3d& point_camera) {
   const Vector2d pixel = frame.camera.project(point_camera);
   const auto x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
@@ -284,7 +282,7 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
   for (Patch& patch : patches) {
     set_deformation(patch, frame.camera, frame.T_world_camera, options.deformation);
   }
-  std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
+  std::erase_if(patches, too_few);  // the deformation may find no plane or no centre
 }
 
 std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,

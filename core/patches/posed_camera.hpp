@@ -1,4 +1,4 @@
-// A camera at a pose hypothesis, and at the levels of the image pyramid.
+// A camera at a pose hypothesis and at the pyramid levels.
 #pragma once
 
 #include "core/base/geometry.hpp"
@@ -6,7 +6,7 @@
 
 namespace fusebench::patches {
 
-/// A camera at a pose hypothesis, with the products that every residual needs.
+/// A camera at a pose hypothesis with precomputed products for the residuals.
 struct PosedCamera {
   PosedCamera(const PinholeCamera& camera_in, const SE3& T_world_imu, const SE3& T_imu_camera);
 
@@ -26,9 +26,9 @@ struct PosedCamera {
     return R_imu_camera * point_camera + t_imu_camera_m;
   }
 
-  /// The derivative of what is measured of a point, by the pose (rotation of the IMU on the right, its
-  /// position in the world), from that by the point in the camera's frame: the camera's point is
-  /// R_ci (R_wi^T (P - p_wi) - p_ic), and turning the IMU by phi moves it by R_ci [X_i]x phi.
+  /// Chain rule from the derivative by the point in the camera frame to that by the pose (rotation of the IMU
+  /// on the right, its position in the world): X_c = R_ci (R_wi^T (P - p_wi) - p_ic), and a rotation phi of
+  /// the IMU moves X_c by R_ci [X_i]x phi.
   template <int Rows>
   [[nodiscard]] Eigen::Matrix<double, Rows, 6> by_pose(const Eigen::Matrix<double, Rows, 3>& by_point,
                                                        const Vector3d& point_camera) const {
@@ -39,7 +39,7 @@ struct PosedCamera {
   }
 };
 
-/// The camera of a pyramid level: pixel (x, y) of level l is (x, y) * 2^l of level 0.
+/// The camera of a pyramid level: pixel (x, y) of level l is at (x, y) * 2^l of level 0.
 [[nodiscard]] PinholeCamera camera_at_level(const PinholeCamera& camera, int level);
 
 }  // namespace fusebench::patches

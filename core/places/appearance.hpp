@@ -1,4 +1,4 @@
-// What a frame is recognised by when the camera comes back.
+// Data for the recognition of a frame.
 #pragma once
 
 #include "core/base/types.hpp"

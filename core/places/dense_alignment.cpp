@@ -14,13 +14,13 @@ namespace fusebench::places {
 
 namespace {
 
-constexpr int kNormalReach = 3;        // small pixels to either side that a normal is made of
-constexpr double kMostBend_m = 0.003;  // of a plane, beside its noise
+constexpr int kNormalReach = 3;        // small pixels to either side, for a normal
+constexpr double kMostBend_m = 0.003;  // largest deviation from a plane, in addition to noise
 constexpr double kBendSigmas = 2.0;
-constexpr int kPointStep = 2;         // every other pixel of the query in either direction
-constexpr double kHuberSigmas = 1.5;  // residuals beyond lose weight (Huber 1964)
+constexpr int kPointStep = 2;         // every second pixel of the query in both directions
+constexpr double kHuberSigmas = 1.5;  // larger residuals are down-weighted (Huber 1964)
 
-/// The depth of a place as planes, by pixel of the small image.
+/// The depth of a place as planes, for each pixel of the small image.
 class Surface {
  public:
   struct Plane {
@@ -42,7 +42,7 @@ class Surface {
     }
   }
 
-  /// Where the point is seen; nothing if there is no plane.
+  /// Plane at the projection of the point; null if there is none.
   [[nodiscard]] const Plane* at(const Vector3d& point_camera) const {
     const auto pixel = pixel_of(point_camera, camera_, planes_);
     if (!pixel || planes_(pixel->x, pixel->y).normal.isZero()) return nullptr;
@@ -50,8 +50,8 @@ class Surface {
   }
 
  private:
-  /// True as well where depth is missing. On a plane the inverse depth is linear in the image: it is not
-  /// across an edge, or the corner of a room.
+  /// True if depth is missing or not planar. Inverse depth is linear in the image on a plane, but not across
+  /// an edge or a corner of the room.
   static bool bends(const DepthImage& depth_m, int x, int y, int dx, int dy,
                     const config::DepthConfig& config) {
     const auto before_m = static_cast<double>(depth_m(x - dx, y - dy));
@@ -67,7 +67,7 @@ class Surface {
   Image<Plane> planes_;
 };
 
-/// Of an image without holes.
+/// Number of points of an image without holes.
 double most_points(const DepthImage& depth_m) {
   const auto every_other = [](int pixels) { return (pixels + kPointStep - 1) / kPointStep; };
   return static_cast<double>(every_other(depth_m.width) * every_other(depth_m.height));
@@ -83,7 +83,7 @@ std::vector<Vector3d> points_of(const DepthImage& depth_m, const PinholeCamera& 
   return points;
 }
 
-/// Normal equations of the distances to planes, each divided by its standard deviation.
+/// Normal equations of the point-to-plane distances, each divided by its standard deviation.
 struct DepthSums {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
@@ -91,7 +91,7 @@ struct DepthSums {
   double weights = 0;
   int pairs = 0;
 
-  /// At least one, and more where the residuals are larger than their noise.
+  /// Variance factor: at least 1, larger if the residuals exceed their noise.
   [[nodiscard]] double variance() const { return weights > 0 ? std::max(1.0, squared / weights) : 1.0; }
 };
 
@@ -121,7 +121,8 @@ DepthSums sums_at(const SE3& T_known_query, const std::vector<Vector3d>& points_
 
 constexpr int kStepsOfGate = 6;
 
-/// Halved to a quarter of the narrow one, at which it ends with twice the steps.
+/// Gates from reach_m, halved at each step, to a quarter of narrow_m. The last one has twice the number of
+/// steps.
 std::vector<double> narrowing_gates_m(double reach_m, double narrow_m) {
   const double last_m = 0.25 * narrow_m;
   std::vector<double> gates_m;

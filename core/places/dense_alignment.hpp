@@ -1,6 +1,6 @@
-// The relative pose of two frames by their depth alone or together with what features say of it: points of
-// one on planes of the other (Chen & Medioni 1992), at a quarter of the images' size, where motion blur and
-// missing texture hardly matter.
+// Relative pose of two frames by depth, optionally combined with a pose from features: point-to-plane
+// alignment (Chen & Medioni 1992) at a quarter of the image size, where motion blur and missing texture have
+// little effect.
 #pragma once
 
 #include <optional>
@@ -17,17 +17,18 @@ struct RelativePose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
-/// From where a pose is searched.
+/// Start of the search.
 struct AlignmentStart {
   RelativePose pose;
   bool from_features = false;
-  double reach_m = 0;  ///< points so far from their plane count at first; at least LoopsConfig::dense_gate_m
+  /// largest initial distance of a point to its plane; at least LoopsConfig::dense_gate_m
+  double reach_m = 0;
 };
 
-/// Searches from that pose. With `from_features`, its covariance counts: directions that depth does not tell,
-/// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
-/// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
-/// of the scatter, as LoopsConfig::dense_measurements counts it.
+/// Aligns from the start pose. With `from_features`, the covariance of the start is a prior: directions that
+/// depth does not constrain, such as sideways along a wall, keep their values. Nothing if too little depth is
+/// near the other surface or a direction is not constrained. The covariance is that of the scatter, as
+/// weighted by LoopsConfig::dense_measurements.
 [[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                                            const AlignmentStart& start,
                                                            const PinholeCamera& camera,

@@ -12,16 +12,16 @@ namespace fusebench::places {
 
 namespace {
 
-/// A pixel of one place in the small images of the other.
+/// A pixel of one place and its position in the small images of the other.
 struct SeenPixel {
-  int x = 0, y = 0;   ///< of the one
-  int u = 0, v = 0;   ///< of the other
-  double here_m = 0;  ///< the depth that it has in the other camera
+  int x = 0, y = 0;   ///< in the first place
+  int u = 0, v = 0;   ///< in the second place
+  double here_m = 0;  ///< its depth in the second camera
   double there_m = 0;
 };
 
-/// Calls back for every pixel of `from` that falls on a pixel with depth of `to`; returns how many pixels of
-/// `from` have depth.
+/// Calls the callback for each pixel of `from` that projects to a pixel with depth of `to`. Returns the
+/// number of pixels of `from` with depth.
 template <class Callback>
 std::size_t for_each_seen(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
                           const PinholeCamera& camera, const Callback& callback) {
@@ -41,7 +41,7 @@ std::size_t for_each_seen(const SmallImages& from, const SmallImages& to, const 
 }
 
 bool on_surface(const SeenPixel& seen, const config::DepthConfig& depth, const config::LoopsConfig& loops) {
-  constexpr double kAllowance_m = 0.01;  // what interpolation and calibration leave
+  constexpr double kAllowance_m = 0.01;  // error of interpolation and calibration
   const double sigma_m = preprocessing::depth_sigma_m(seen.here_m, depth);
   return std::abs(seen.here_m - seen.there_m) <= loops.depth_sigmas * sigma_m + kAllowance_m;
 }

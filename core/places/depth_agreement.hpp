@@ -1,4 +1,4 @@
-// Two places against each other at a pose: what the depth and the intensities of one say about the other.
+// Consistency of the depth and intensities of two places at a relative pose.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace fusebench::places {
 
-/// Of the pixels with depth of one place, seen from another one.
+/// Shares of the pixels with depth of one place, projected into another one.
 struct DepthAgreement {
-  double overlap = 0;     ///< share that falls on depth of the other
-  double consistent = 0;  ///< share that lies on the surface which the other sees there
-  double violating = 0;   ///< of those that overlap, the share that lies where the other saw free space
+  double overlap = 0;     ///< share that projects to a pixel with depth
+  double consistent = 0;  ///< share that is on the surface measured there
+  double violating = 0;   ///< of the overlapping pixels, the share in measured free space
 };
 
-/// On the surface: within LoopsConfig::depth_sigmas of the depth noise, and 1 cm more.
+/// On the surface: within LoopsConfig::depth_sigmas of the depth noise plus 1 cm.
 [[nodiscard]] DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to,
                                              const SE3& T_to_from, const PinholeCamera& camera,
                                              const config::DepthConfig& depth,
                                              const config::LoopsConfig& loops);
 
-/// How well intensities correlate (ZNCC) where the depth of `from` lies on the surface of `to`; nothing if
-/// one of them has less contrast there than `min_contrast_grey`.
+/// ZNCC of the intensities where the depth of `from` is on the surface of `to`; nothing if the contrast of
+/// either is below `min_contrast_grey`.
 [[nodiscard]] std::optional<double> grey_correlation(const SmallImages& from, const SmallImages& to,
                                                      const SE3& T_to_from, const PinholeCamera& camera,
                                                      const config::DepthConfig& depth,

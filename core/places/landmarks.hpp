@@ -1,4 +1,4 @@
-// Features with depth, by which a place is recognised and by which it tells a pose.
+// Features with depth, for the recognition of a place and its relative pose.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 namespace fusebench::places {
 
 struct Landmarks {
-  std::vector<PlaceFeature> features;   ///< those with depth
-  std::vector<Vector3d> points_camera;  ///< one a feature, in the camera's axes, metres
+  std::vector<PlaceFeature> features;   ///< features with depth
+  std::vector<Vector3d> points_camera;  ///< one for each feature, camera axes, metres
 };
 
 /// The landmarks in a frame; depth in metres, 0 = none.
@@ -19,14 +19,14 @@ struct Landmarks {
                                      const PinholeCamera& camera, const config::PlaceFeaturesConfig& features,
                                      const config::RelocalisationConfig& relocalisation);
 
-/// The landmarks in the frame's image of half the size, if that is not less than 320 pixels wide, at most
-/// `max_count`: a quarter of the work, and what is left of a blurred image.
+/// The landmarks in the half-size image of the frame, if it is at least 320 pixels wide; at most `max_count`.
+/// A quarter of the work, and less sensitive to blur.
 [[nodiscard]] Landmarks coarse_landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
                                             const PinholeCamera& camera, int max_count,
                                             const config::PlaceFeaturesConfig& features,
                                             const config::RelocalisationConfig& relocalisation);
 
-/// The depth of a feature; 0 if it is at an edge of depth, where it may be that of the thing behind.
+/// The depth of a feature; 0 at a depth edge, where it may be that of the background.
 [[nodiscard]] double landmark_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
                                       const config::RelocalisationConfig& config);
 

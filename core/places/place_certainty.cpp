@@ -10,7 +10,7 @@ namespace fusebench::places {
 
 namespace {
 
-/// Cells of a grid over the image in which inliers are.
+/// Number of cells of an image grid with inliers.
 int occupied_cells(std::span<const SeenPoint> seen, const std::vector<std::size_t>& inliers,
                    const PinholeCamera& camera, int cells_per_side) {
   std::vector<bool> occupied(static_cast<std::size_t>(cells_per_side * cells_per_side));

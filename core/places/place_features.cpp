@@ -13,14 +13,14 @@ namespace fusebench::places {
 
 namespace {
 
-// Side of what a descriptor looks at, in pixels of its level: the comparisons of ORB were learnt on patches
-// of this size (Rublee et al. 2011, Sec. 4.3).
+// Side of the area of a descriptor, in pixels of its level: the comparisons of ORB were trained on patches of
+// this size (Rublee et al. 2011, Sec. 4.3).
 constexpr int kPatch_px = 31;
-// As in ORB-SLAM (EDGE_THRESHOLD): a descriptor may look out of the image by some pixels, where it sees a
-// mirror image. Coarse levels would have few corners otherwise.
+// As in ORB-SLAM (EDGE_THRESHOLD): a descriptor may extend beyond the border by some pixels, where the image
+// is mirrored. Coarse levels would have few corners otherwise.
 constexpr int kEdge_px = 19;
 
-// OpenCV has no read-only view; nothing writes through this one.
+// OpenCV has no read-only view; the data is never written.
 cv::Mat view_of(const GreyImage& grey) {
   return {grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data())};
 }
@@ -32,10 +32,10 @@ std::size_t cell_of(const cv::KeyPoint& corner, const GreyImage& grey,
   return static_cast<std::size_t>(row * config.grid_columns + column);
 }
 
-/// First the share of each cell, then the strongest of the rest.
+/// First the share of each cell, then the strongest remaining corners.
 std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> corners, const GreyImage& grey,
                                  const config::PlaceFeaturesConfig& config) {
-  // A total order: the result must not depend on the detector's own.
+  // Total order, so that the result does not depend on the order of the detector.
   std::sort(corners.begin(), corners.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     return std::make_tuple(-a.response, a.octave, a.pt.y, a.pt.x) <
            std::make_tuple(-b.response, b.octave, b.pt.y, b.pt.x);
@@ -64,20 +64,20 @@ PlaceFeature feature_of(const cv::KeyPoint& corner, const std::uint8_t* descript
   return feature;
 }
 
-/// The nearest known feature of a query feature, and the distances of the two nearest (bits).
+/// The nearest reference feature of a query feature and the distances of the two nearest (bits).
 struct Nearest {
   std::size_t index = 0;
   int first = std::numeric_limits<int>::max();
   int second = std::numeric_limits<int>::max();
 
-  /// The ratio is in percent, so that the test is one of integers.
+  /// The ratio is in percent, so the test uses integers.
   [[nodiscard]] bool distinct(const config::PlaceFeaturesConfig& config) const {
     return first <= config.max_descriptor_bits &&
            100LL * first < static_cast<long long>(config.max_ratio_percent) * second;
   }
 };
 
-/// Of equally near features the first one.
+/// The first one of equal distances.
 Nearest nearest_to(const OrbDescriptor& descriptor, std::span<const PlaceFeature> features) {
   Nearest nearest;
   for (std::size_t i = 0; i < features.size(); ++i) {
@@ -98,7 +98,7 @@ std::vector<PlaceFeature> find_place_features(const GreyImage& grey,
                                               const config::PlaceFeaturesConfig& config) {
   if (grey.width <= 2 * kPatch_px || grey.height <= 2 * kPatch_px) return {};
   const cv::Mat view = view_of(grey);
-  // The score of FAST is an integer, that of Harris is not.
+  // The FAST score is an integer; the Harris score is not.
   const auto orb =
       cv::ORB::create(config.detected_per_taken * config.max_count, static_cast<float>(config.level_factor),
                       config.levels, kEdge_px, 0, 2, cv::ORB::FAST_SCORE, kPatch_px, config.fast_threshold);

@@ -28,7 +28,7 @@ std::vector<SeenPoint> seen_points(const Appearance& known, const Appearance& qu
   return seen;
 }
 
-/// By features; pair.reason says why not.
+/// Pose by features; on failure sets pair.reason.
 std::optional<RelativePose> pose_by_features(const Appearance& known, const Appearance& query,
                                              const PinholeCamera& camera, const config::Config& config,
                                              VerifiedPair& pair) {
@@ -42,13 +42,13 @@ std::optional<RelativePose> pose_by_features(const Appearance& known, const Appe
   const auto pose = pose_from_points(seen, camera);
   if (pose) pair.inliers = static_cast<int>(pose->inliers.size());
   if (!pose || !is_certain_place(seen, *pose, camera, config.relocalisation)) {
-    pair.reason = fmt::format("{} of {} matches agree, which is not certain", pair.inliers, pair.matches);
+    pair.reason = fmt::format("{} of {} matches agree, too few to be certain", pair.inliers, pair.matches);
     return std::nullopt;
   }
   return RelativePose{pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance};
 }
 
-/// By depth alone; pair.reason says why not.
+/// Pose by depth alone; on failure sets pair.reason.
 std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallImages& query,
                                           const SE3& T_known_query, double reach_m,
                                           const PinholeCamera& camera, const config::Config& config,
@@ -57,14 +57,14 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
   const auto aligned = aligned_by_depth(known, query, {{T_known_query, Matrix6d::Identity()}, false, reach_m},
                                         camera, config.depth, config.loops);
   if (!aligned) {
-    pair.reason = "their depth cannot be aligned";
+    pair.reason = "the depth images cannot be aligned";
     return std::nullopt;
   }
   const double rotation_sigma_rad = largest_sigma(aligned->covariance.topLeftCorner<3, 3>());
   const double position_sigma_m = largest_sigma(aligned->covariance.bottomRightCorner<3, 3>());
   if (rotation_sigma_rad > radians(loops.max_rotation_sigma_deg) ||
       position_sigma_m > loops.max_position_sigma_m) {
-    pair.reason = fmt::format("depth tells the pose to {:.2f} degrees and {:.1f} cm only",
+    pair.reason = fmt::format("depth determines the pose to {:.2f} degrees and {:.1f} cm only",
                               degrees(rotation_sigma_rad), 100 * position_sigma_m);
     return std::nullopt;
   }
@@ -79,7 +79,7 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
   return aligned;
 }
 
-/// What the depth of either says against the pose; empty if nothing.
+/// Contradiction of the pose by the depth of either place; empty if there is none.
 std::string contradiction_of_depth(const SmallImages& known, const SmallImages& query,
                                    const PinholeCamera& camera, const config::Config& config,
                                    VerifiedPair& pair) {
@@ -94,12 +94,12 @@ std::string contradiction_of_depth(const SmallImages& known, const SmallImages& 
     return fmt::format("{:.0f} % of the depth fits (at least {:.0f} %)", 100 * pair.consistent_share,
                        100 * loops.min_consistent_share);
   if (pair.violating_share > loops.max_violating_share)
-    return fmt::format("{:.0f} % of the depth lies in free space (at most {:.0f} %)",
+    return fmt::format("{:.0f} % of the depth is in free space (at most {:.0f} %)",
                        100 * pair.violating_share, 100 * loops.max_violating_share);
   return {};
 }
 
-/// The pair at that pose, if the depth of both agrees with it.
+/// Sets the result of the pair at that pose, if the depth of both agrees with it.
 void conclude(const RelativePose& pose, const SmallImages& known, const SmallImages& query,
               const PinholeCamera& camera, const config::Config& config, VerifiedPair& pair) {
   pair.T_known_query = pose.T_known_query;
@@ -142,7 +142,7 @@ VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const
           .overlap < config.loops.min_consistent_share)
     return by_features;
   VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, 0, camera, config);
-  // Where depth was aligned, what it contradicts is the reason, and before, what features lacked as well.
+  // The reason is that of depth if it was aligned; otherwise that of the features, followed by that of depth.
   if (!by_depth.by_depth_alone) by_depth.reason = by_features.reason + "; " + by_depth.reason;
   return with_counts(std::move(by_depth));
 }

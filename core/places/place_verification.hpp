@@ -1,5 +1,5 @@
-// Whether two frames show the same place, and from where: by features or, where blur or a bare wall leaves
-// none, by depth; and by the depth of both against each other.
+// Verifies that two frames show the same place and estimates their relative pose: by features or, without
+// features (blur, a bare wall), by depth. Then checks the depth of both against each other.
 #pragma once
 
 #include <string>
@@ -11,35 +11,35 @@
 
 namespace fusebench::places {
 
-/// What was found of a pair of frames.
+/// Result of the verification of a pair.
 struct VerifiedPair {
   bool same = false;
-  std::string reason;  ///< why not; empty if it is
+  std::string reason;  ///< reason of the failure; empty if same
   int matches = 0;
   int inliers = 0;
   bool by_depth_alone = false;
   double consistent_share = 0;             ///< of depth, the smaller one of both directions
-  double violating_share = 0;              ///< the larger one
-  SE3 T_known_query;                       ///< of the cameras
+  double violating_share = 0;              ///< the larger one of both directions
+  SE3 T_known_query;                       ///< relative pose of the cameras
   Matrix6d covariance = Matrix6d::Zero();  ///< rotation on the right, position in the frame of `known`
 };
 
-/// The landmarks of `query` against those of `known` (P3P in RANSAC, as for relocalisation), refined by depth
-/// (dense_alignment.hpp). If that is not certain: verify_by_depth() from where the path leads, if both see
-/// the same by it. At last the depth of either against that of the other: what the other one sees there, or
-/// free space where there should be a surface.
+/// Matches the landmarks of `query` and `known` (P3P in RANSAC, as for relocalisation) and refines the pose
+/// by depth (dense_alignment.hpp). If the result is not certain, runs verify_by_depth() from the relative
+/// pose of the path, if the views overlap by it. Finally checks the depth of each against the other: same
+/// surface or violated free space.
 [[nodiscard]] VerifiedPair verify_pair(const Appearance& known, const Appearance& query,
                                        const SE3& T_known_query_by_path, const PinholeCamera& camera,
                                        const config::Config& config);
 
-/// A pose that features found, with its covariance, refined and judged by depth in both directions.
+/// Verifies a pose from features, with its covariance: refines it and checks it by depth in both directions.
 [[nodiscard]] VerifiedPair verify_from_features(const SmallImages& known, const SmallImages& query,
                                                 const RelativePose& pose, const PinholeCamera& camera,
                                                 const config::Config& config);
 
-/// Depth alone, aligned from that pose, which may be off by about reach_m (AlignmentStart). It has to tell
-/// the pose along every axis, intensities have to fit where both images have contrast, and the depth of
-/// either that of the other.
+/// Verifies by depth alone, aligned from `start`, whose error may be about reach_m (AlignmentStart). Requires
+/// that depth constrains all axes, that intensities correlate where both images have contrast, and that the
+/// depths agree.
 [[nodiscard]] VerifiedPair verify_by_depth(const SmallImages& known, const SmallImages& query,
                                            const SE3& T_known_query_start, double reach_m,
                                            const PinholeCamera& camera, const config::Config& config);

@@ -16,12 +16,12 @@ namespace {
 /// Largest reprojection error of an inlier (pixels of the level of its feature): three standard deviations
 /// of a corner.
 constexpr double kInlierGate_px = 3.0;
-/// Largest number of draws of three points: log(0.001) / log(1 - 0.25^3), for a quarter of inliers.
+/// Largest number of RANSAC draws: log(0.001) / log(1 - 0.25^3), for a quarter of inliers.
 constexpr int kMaxDraws = 440;
-/// Drawing ends when the probability of having missed three inliers, given the share found so far, is below
+/// Drawing ends when the probability that no draw had three inliers, given the current inlier share, is below
 /// this.
 constexpr double kFailureProbability = 0.001;
-/// Rounds of refining the pose by its inliers and finding these again.
+/// Rounds of refining the pose by its inliers and selecting them again.
 constexpr int kRefinementRounds = 3;
 /// Gauss-Newton steps of a round.
 constexpr int kStepsPerRound = 5;
@@ -29,7 +29,7 @@ constexpr int kStepsPerRound = 5;
 /// corner.
 constexpr double kHuber_px = 1.0;
 
-// Twice the three points that determine a pose: as many measurements are left over to tell how well they fit.
+// Twice the minimal three points, so that the redundancy shows the quality of the fit.
 constexpr std::size_t kMinPoints = 6;
 
 /// SplitMix64 (Steele et al., OOPSLA 2014).
@@ -49,15 +49,15 @@ struct Draws {
   }
 };
 
-/// Squared distance of a point to where it is seen, in scales; infinite behind the camera.
+/// Squared reprojection error of a point, in scales; infinite behind the camera.
 double squared_error(const SeenPoint& seen, const SE3& T_camera_a, const PinholeCamera& camera) {
-  constexpr double kMinDepth_m = 0.01;  // nearer, the projection runs out of all images
+  constexpr double kMinDepth_m = 0.01;  // closer points project beyond all images
   const Vector3d point_camera = T_camera_a * seen.point_a;
   if (!(point_camera.z() > kMinDepth_m)) return std::numeric_limits<double>::infinity();
   return (camera.project(point_camera) - seen.pixel_px).squaredNorm() / (seen.scale * seen.scale);
 }
 
-/// Up to four poses T_camera_a that three points allow.
+/// Up to four poses T_camera_a for three points (P3P).
 std::vector<SE3> poses_of_three(std::span<const SeenPoint> seen, const std::array<std::size_t, 3>& three,
                                 const PinholeCamera& camera) {
   std::array<cv::Point3d, 3> points;
@@ -81,8 +81,7 @@ std::vector<SE3> poses_of_three(std::span<const SeenPoint> seen, const std::arra
   return poses;
 }
 
-/// How well a pose explains the points: a wrong point costs as much as one at the gate (MSAC, Torr and
-/// Zisserman 2000).
+/// Cost of a pose: an outlier costs as much as a point at the gate (MSAC, Torr and Zisserman 2000).
 struct Score {
   double cost = std::numeric_limits<double>::infinity();
   std::size_t inliers = 0;
@@ -100,7 +99,7 @@ Score score_of(std::span<const SeenPoint> seen, const SE3& T_camera_a, const Pin
   return score;
 }
 
-/// Draws that find three inliers of such a share with the wanted certainty.
+/// Number of draws that reach the required probability at this inlier share.
 int draws_needed(std::size_t inliers, std::size_t count) {
   const double share = static_cast<double>(inliers) / static_cast<double>(count);
   const double all_right = share * share * share;
@@ -135,13 +134,13 @@ std::vector<std::size_t> inliers_of(std::span<const SeenPoint> seen, const SE3& 
   return inliers;
 }
 
-/// Sums over inliers in rotation (on the right) and position in the camera's axes.
+/// Normal equations of the inliers: rotation (on the right) and position in the camera axes.
 struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
 };
 
-/// Weights are Huber's, with a bound in scales.
+/// Huber weights with a bound in scales.
 NormalEquations normal_equations(std::span<const SeenPoint> seen, std::span<const std::size_t> inliers,
                                  const SE3& T_a_camera, const PinholeCamera& camera, double huber_px) {
   const SE3 T_camera_a = T_a_camera.inverse();
@@ -170,7 +169,7 @@ SE3 stepped(std::span<const SeenPoint> seen, std::span<const std::size_t> inlier
   return T_a_camera * SE3{so3_exp(step.head<3>()), step.tail<3>()};
 }
 
-/// What is known of the pose, given how far the inliers are off.
+/// Sets the rms and the covariance of the pose from the scatter of the inliers.
 void describe(std::span<const SeenPoint> seen, const PinholeCamera& camera, double huber_px,
               PoseFromPoints& result) {
   const SE3 T_camera_a = result.T_a_camera.inverse();
@@ -193,7 +192,7 @@ std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, 
   if (seen.size() < kMinPoints) return std::nullopt;
   PoseFromPoints result;
   result.T_a_camera = best_of_draws(seen, camera).inverse();
-  // The right points of three noisy ones are not all: each round finds more.
+  // A pose from three noisy points misses some inliers; each round finds more.
   for (int round = 0; round < kRefinementRounds; ++round) {
     result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, kInlierGate_px);
     if (result.inliers.size() < kMinPoints) return std::nullopt;

@@ -1,4 +1,4 @@
-// What is looked at of many candidates: those that are the most alike, or the nearest.
+// Selection of the smallest candidates (most similar or nearest).
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,7 @@
 
 namespace fusebench::places {
 
-/// The candidates with the smallest numbers, at most so many, the smallest first; of equal ones those that
-/// stood first.
+/// The `count` candidates with the smallest numbers, ascending; stable for equal ones.
 template <class Candidate>
 [[nodiscard]] std::vector<Candidate> smallest_first(std::vector<std::pair<double, Candidate>> numbered,
                                                     std::size_t most) {

@@ -11,18 +11,18 @@ namespace fusebench::prediction {
 
 namespace {
 
-// A recording may stop its IMU a little before its camera; holding a sample that long adds less error than a
-// frame's worth of constant velocity would.
+// The IMU of a recording may stop a little before its camera. Holding a sample for this time adds less error
+// than constant velocity over a frame.
 constexpr std::int64_t kMaxHoldNs = 50'000'000;
 
-// Half the window of smoothed samples: takes away four fifths of the noise at 200 Hz.
+// Half the window of smoothed samples: removes four fifths of the noise at 200 Hz.
 constexpr double kSmoothedS = 0.1;
 
-// The same for the rate at a frame, by which its rows are compensated: takes away two thirds of the noise at
-// 200 Hz and follows motion of 4 Hz to a hundredth.
+// Half the window for the rate at a frame, used for the compensation of its rows: removes two thirds of the
+// noise at 200 Hz, with an error of 1 % for motion at 4 Hz.
 constexpr double kRateWindow_s = 0.04;
 
-/// The sample at an instant, interpolated linearly or, outside the span, the nearest one.
+/// The sample at an instant, by linear interpolation; outside the span, the nearest one.
 ImuSample sample_at(std::span<const ImuSample> samples, std::int64_t timestamp_ns) {
   const auto after = std::ranges::lower_bound(samples, timestamp_ns, {}, &ImuSample::timestamp_ns);
   ImuSample result = after == samples.end() ? samples.back() : *after;
@@ -40,7 +40,7 @@ ImuSample sample_at(std::span<const ImuSample> samples, std::int64_t timestamp_n
   return result;
 }
 
-/// The samples within [begin, end] with interpolated ones exactly at both ends.
+/// The samples within [begin, end], with interpolated samples exactly at both ends.
 std::vector<ImuSample> cut(std::span<const ImuSample> samples, std::int64_t begin_ns, std::int64_t end_ns) {
   std::vector<ImuSample> result{sample_at(samples, begin_ns)};
   for (auto it = std::ranges::upper_bound(samples, begin_ns, {}, &ImuSample::timestamp_ns);
@@ -51,7 +51,7 @@ std::vector<ImuSample> cut(std::span<const ImuSample> samples, std::int64_t begi
   return result;
 }
 
-/// A corrected sample, and how it depends on the errors of the IMU.
+/// A corrected sample and its derivatives by the IMU errors.
 struct CorrectedSample {
   CorrectedSample(const ImuSample& measured, const InertialErrors& errors)
       : sample(corrected(measured, errors)), R(so3_exp(errors.rotation_rad).toRotationMatrix()) {
@@ -73,7 +73,7 @@ struct CorrectedSample {
   ByInertialErrors force_by_errors;
 };
 
-/// One mid-point step from sample to sample. Position first, with the old velocity.
+/// One mid-point step between two samples. Updates the position first, with the old velocity.
 void integrate_step(PreintegratedImu& sum, const CorrectedSample& from, const CorrectedSample& to,
                     const ImuNoise& noise) {
   const ImuSample& a = from.sample;
@@ -86,12 +86,12 @@ void integrate_step(PreintegratedImu& sum, const CorrectedSample& from, const Co
   const Matrix3d Jr = so3_right_jacobian(turn);
   const Vector3d force = 0.5 * (R0 * a.specific_force_mps2 + R1 * b.specific_force_mps2);
 
-  // Derivative of the mean force by a rotation error before and after the step.
+  // Derivatives of the mean force by a rotation error at the start and the end of the step.
   const Matrix3d force_by_rotation0 = -0.5 * R0 * hat(a.specific_force_mps2);
   const Matrix3d force_by_rotation1 = -0.5 * R1 * hat(b.specific_force_mps2);
   const Matrix3d force_by_noise = -0.5 * (R0 + R1);
 
-  // By the errors of the IMU: the chain rule through the same step.
+  // Derivatives by the IMU errors: chain rule through the step.
   const ByInertialErrors rotation1_by_errors =
       step.transpose() * sum.rotation_by_errors + 0.5 * dt * Jr * (from.rate_by_errors + to.rate_by_errors);
   const ByInertialErrors force_by_errors = force_by_rotation0 * sum.rotation_by_errors +
@@ -127,10 +127,10 @@ void integrate_step(PreintegratedImu& sum, const CorrectedSample& from, const Co
 }
 
 /// Derivative of the increments by a common shift of both instants. With R_begin_s the orientation since the
-/// beginning, d/dt_begin R_begin_s = -[w_begin]x R_begin_s, and the end adds the integrand there.
+/// begin, d/dt_begin R_begin_s = -[w_begin]x R_begin_s; the end adds the integrand.
 ///
-/// begin and end are smoothed: where a camera moves slowly single samples are mostly noise, the same noise is
-/// in the increments, and an estimate of the offset that ignores this error is biased and overconfident.
+/// begin and end are smoothed. In slow motion single samples are mostly noise, which the increments contain
+/// too. An offset estimate that ignores this correlation is biased and overconfident.
 void differentiate_by_time_offset(PreintegratedImu& sum, const ImuSample& begin, const ImuSample& end) {
   const Matrix3d R = sum.delta_rotation.toRotationMatrix();
   const Vector3d& rate = begin.angular_velocity_radps;
@@ -180,7 +180,7 @@ Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::i
                                corrected(smoothed_sample(samples, end_ns, kSmoothedS), errors));
   const ImuSample& before = window[window.size() - 2].sample;
   const CorrectedSample end(smoothed_sample(samples, end_ns, kRateWindow_s), errors);
-  // A parabola's value at its middle has 9/4 of the variance of a mean (Savitzky & Golay 1964).
+  // The value of a fitted parabola at its middle has 9/4 of the variance of a mean (Savitzky & Golay 1964).
   sum.rate_averaged_s = 2 * kRateWindow_s * 4 / 9;
   sum.angular_velocity_end_radps = end.sample.angular_velocity_radps;
   sum.angular_velocity_end_by_errors = end.rate_by_errors;

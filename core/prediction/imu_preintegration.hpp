@@ -14,8 +14,8 @@ namespace fusebench::prediction {
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-/// What an IMU measures wrongly. A rate w (or specific force) in the axes of T_imu_camera is measured as
-/// (1 + scale) . (Exp(-rotation) (w + bias)), by axis.
+/// Measurement errors of an IMU. A rate w (or specific force) in the axes of T_imu_camera is measured as (1 +
+/// scale) . (Exp(-rotation) (w + bias)), by axis.
 struct InertialErrors {
   Vector3d gyroscope_bias_radps = Vector3d::Zero();
   Vector3d accelerometer_bias_mps2 = Vector3d::Zero();
@@ -23,13 +23,13 @@ struct InertialErrors {
   Vector3d gyroscope_scale = Vector3d::Zero();
   Vector3d accelerometer_scale = Vector3d::Zero();
 };
-inline constexpr int kInertialErrors = 15;  ///< in this order
+inline constexpr int kInertialErrors = 15;  ///< number of errors, in this order
 using ByInertialErrors = Eigen::Matrix<double, 3, kInertialErrors>;
 
-/// The sample without these errors.
+/// The sample corrected by these errors.
 [[nodiscard]] ImuSample corrected(const ImuSample& sample, const InertialErrors& errors);
 
-/// Motion between two instants as measured by the IMU, with first-order dependence on its errors.
+/// Motion between two instants as measured by the IMU, with first-order derivatives by its errors.
 struct PreintegratedImu {
   double duration_s = 0;
   Quaterniond delta_rotation = Quaterniond::Identity();  ///< R_begin_end
@@ -40,19 +40,19 @@ struct PreintegratedImu {
   ByInertialErrors velocity_by_errors = ByInertialErrors::Zero();
   ByInertialErrors position_by_errors = ByInertialErrors::Zero();
   Vector3d rotation_by_time_offset =
-      Vector3d::Zero();  ///< rad/s: when both instants shift together on the IMU's clock
+      Vector3d::Zero();  ///< rad/s: derivative by a common shift of both instants
   Vector3d velocity_by_time_offset = Vector3d::Zero();     ///< m/s^2
   Vector3d position_by_time_offset = Vector3d::Zero();     ///< m/s
   Vector3d angular_velocity_end_radps = Vector3d::Zero();  ///< corrected rate at the end
   ByInertialErrors angular_velocity_end_by_errors = ByInertialErrors::Zero();
-  Vector3d angular_acceleration_end_radps2 = Vector3d::Zero();  ///< its slope there
-  double last_step_s = 0;                                       ///< spacing of the samples there
-  double rate_averaged_s = 0;  ///< the rate there has the noise of a mean over so long
+  Vector3d angular_acceleration_end_radps2 = Vector3d::Zero();  ///< derivative of the rate at the end
+  double last_step_s = 0;                                       ///< spacing of the samples at the end
+  double rate_averaged_s = 0;  ///< averaging time with the same noise as the rate at the end
 };
 
-/// Integrates from begin to end by the mid-point rule; the samples at both ends are interpolated to the exact
-/// instants. `samples` are sorted by time. Where they end up to 50 ms short of either instant, the nearest
-/// one is held; beyond that the error data_corrupt names the times.
+/// Integrates from begin to end by the mid-point rule, with samples interpolated at both instants. `samples`
+/// are sorted by time. If they end up to 50 ms before either instant, the nearest one is held; beyond that,
+/// error data_corrupt with the times.
 [[nodiscard]] Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::int64_t begin_ns,
                                                     std::int64_t end_ns, const InertialErrors& errors,
                                                     const ImuNoise& noise);

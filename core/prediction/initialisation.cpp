@@ -24,7 +24,7 @@ struct WindowStatistics {
   double accelerometer_std_mps2 = 0;
 };
 
-/// Means over the window, with each force turned into the IMU frame at the first frame.
+/// Means over the window, each force rotated into the IMU frame at the first frame.
 WindowStatistics window_statistics(std::span<const ImuSample> window, std::int64_t first_frame_ns) {
   const double count = static_cast<double>(window.size());
   // Orientation of each sample relative to the first of the window, then relative to the first frame.
@@ -89,8 +89,8 @@ Result<filter::GaussianState> initialise_with_imu(std::span<const ImuSample> sam
       });
   state.mean.angular_velocity_imu_radps = now->angular_velocity_radps - state.mean.gyroscope_bias_radps;
 
-  // The pose is known by definition. Tilt and accelerometer bias are not separately observable at rest: the
-  // direction of gravity is as uncertain as the bias makes it.
+  // The pose is exact by definition. Tilt and accelerometer bias are not separately observable at rest, so
+  // the uncertainty of gravity follows from that of the bias.
   const double tilt_sigma = config.accelerometer_bias_sigma_mps2 / kGravity_mps2;
   const double rest_bias_sigma = s.gyroscope_std_radps / std::sqrt(static_cast<double>(window.size())) + 1e-4;
   set_variance(state, filter::kVelocity, 3,

@@ -11,15 +11,15 @@ namespace fusebench::prediction {
 namespace {
 double square(double x) { return x * x; }
 
-/// Variance of a random walk of the given density after some time, on the diagonal of a block.
+/// Adds the variance of a random walk of the given density to the diagonal of a block.
 void add_random_walk(filter::StateMatrix& noise, int offset, int size, double density, double duration_s) {
   noise.diagonal().segment(offset, size).array() += square(density) * duration_s;
 }
 
-/// How a velocity moves a pose over some time.
+/// Effect of a velocity on a pose over a duration.
 struct VelocityEffect {
   double kept = 1;     ///< factor on the velocity
-  double reach_s = 0;  ///< the pose moves by this times the velocity
+  double reach_s = 0;  ///< pose change = reach_s * velocity
   /// Variance of the pose, covariance of pose and velocity, variance of the velocity, per axis.
   Vector3d noise = Vector3d::Zero();
 };
@@ -40,7 +40,7 @@ VelocityEffect damped_velocity(double duration_s, double time_constant_s, double
   return {kept, reach_s, variance * unit};
 }
 
-/// Adds noise of a pose and its velocity: (pose, pose and velocity, velocity), the same on each axis.
+/// Adds the noise (pose, pose-velocity, velocity), equal on all axes, to the covariance.
 void add_motion_noise(filter::StateMatrix& covariance, int pose, int rate, const Vector3d& noise) {
   covariance.block<3, 3>(pose, pose).diagonal().array() += noise[0];
   covariance.block<3, 3>(pose, rate).diagonal().array() += noise[1];
@@ -48,7 +48,7 @@ void add_motion_noise(filter::StateMatrix& covariance, int pose, int rate, const
   covariance.block<3, 3>(rate, rate).diagonal().array() += noise[2];
 }
 
-/// Moves the pose by its velocities: linear (world) and angular (body).
+/// Moves the pose by the linear (world) and the angular velocity (body).
 Prediction moved_by_velocities(const filter::GaussianState& state, const VelocityEffect& linear,
                                const VelocityEffect& angular) {
   const filter::FilterState& x = state.mean;
@@ -107,7 +107,7 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   F.block<3, 3>(filter::kPosition, filter::kRotation) = -R * hat(imu.delta_position_m);
   F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
   F.block<3, 2>(filter::kPosition, filter::kGravity) = 0.5 * dt * dt * gravity_by_delta;
-  // The body rate is measured again: its previous error is dropped, and it has that of the IMU.
+  // The body rate is measured again, so its previous error is replaced by that of the IMU.
   F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity).setZero();
   const auto by_errors = [&F](int row, const ByInertialErrors& jacobian) {
     F.block<3, 6>(row, filter::kGyroscopeBias) = jacobian.leftCols<6>();
@@ -122,7 +122,7 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   F.block<3, 1>(filter::kPosition, filter::kImuTimeOffset) = R * imu.position_by_time_offset;
   F.block<3, 1>(filter::kAngularVelocity, filter::kImuTimeOffset) = imu.angular_acceleration_end_radps2;
 
-  // Increments are in the old IMU frame; velocity and position errors are in the world.
+  // Increments are in the previous IMU frame; velocity and position errors are in the world.
   Eigen::Matrix<double, filter::kStateSize, 9> G = Eigen::Matrix<double, filter::kStateSize, 9>::Zero();
   G.block<3, 3>(filter::kRotation, 0).setIdentity();
   G.block<3, 3>(filter::kVelocity, 3) = R;

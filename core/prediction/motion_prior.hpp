@@ -1,4 +1,4 @@
-// Prediction between frames (Eqs. 8-10 and 14 of the paper): by the IMU, or by constant velocity; and dead
+// Prediction between frames (Eqs. 8-10 and 14 of the paper) by the IMU or by constant velocity, and dead
 // reckoning without an IMU by a motion model of hand-held cameras.
 #pragma once
 
@@ -13,25 +13,25 @@
 
 namespace fusebench::prediction {
 
-/// A prediction with the Jacobian that carried the covariance (for tests and smoothers).
+/// A prediction with its Jacobian (for tests and smoothers).
 struct Prediction {
   filter::GaussianState state;
   filter::StateMatrix transition =
-      filter::StateMatrix::Identity();  ///< F, tangent at the old mean to tangent at the new one
+      filter::StateMatrix::Identity();  ///< F, from the tangent at the old mean to that at the new mean
 };
 
-/// What the state says of the IMU.
+/// The IMU errors of a state.
 [[nodiscard]] InertialErrors inertial_errors(const filter::FilterState& state);
 
-/// Propagates by pre-integrated samples. The velocity term and gravity, which Eq. 13 leaves out or misplaces,
-/// are in. The increments must have been integrated with the errors of the state.
+/// Propagates by pre-integrated samples, including the velocity term and gravity, which Eq. 13 omits or
+/// misplaces. The increments must be integrated with the IMU errors of the state.
 [[nodiscard]] Prediction predict_by_imu(const filter::GaussianState& state, const PreintegratedImu& imu,
                                         const ImuNoise& noise, const config::MotionConfig& config);
 
-/// Propagates with constant linear velocity (world) and angular velocity (body) over duration_s, driven by
-/// white accelerations. Biases and gravity do not change. The prior of an update without an IMU: wide enough
-/// for motions that are much quicker than the recording so far, of which the images decide. Over many frames
-/// without an update its covariance is far too large, for which there is predict_by_motion_model().
+/// Propagates with constant linear (world) and angular velocity (body) over duration_s, driven by white
+/// acceleration. Biases and gravity are constant. It is the prior of an update without an IMU, wide enough
+/// for motions much quicker than before. Over many frames without an update its covariance is far too large;
+/// use predict_by_motion_model().
 [[nodiscard]] Prediction predict_by_constant_velocity(const filter::GaussianState& state, double duration_s,
                                                       const config::MotionConfig& config);
 
@@ -40,10 +40,10 @@ struct MotionScale {
   double speed_m2ps2 = 0;   ///< of the linear velocity (world)
   double rate_rad2ps2 = 0;  ///< of the angular velocity (body)
 };
-/// Before the first frame: motion.speed_mps and motion.rate_radps.
+/// Initial scale: motion.speed_mps and motion.rate_radps.
 [[nodiscard]] MotionScale initial_motion_scale(const config::MotionConfig& config);
-/// The exponential mean over MotionConfig::scale_time_s of the squared velocities, after a frame of that
-/// state and duration_s since the frame before.
+/// Exponential mean of the squared velocities over MotionConfig::scale_time_s, after a frame with that state
+/// and duration_s since the previous frame.
 [[nodiscard]] MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& state,
                                          double duration_s, const config::MotionConfig& config);
 
@@ -56,13 +56,13 @@ struct MotionScale {
                                                  const MotionScale& scale,
                                                  const config::MotionConfig& config);
 
-/// Capture instants of the last frame and the one that is predicted.
+/// Capture instants of the last frame and of the predicted one.
 struct FrameInterval {
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
 };
 
-/// Sec. 2.2.1: predicts by the IMU of a recording. The samples are of the whole recording, sorted; error
+/// Sec. 2.2.1: predicts by the IMU of a recording. `samples`: of the whole recording, sorted; error
 /// data_corrupt if they do not cover the interval.
 [[nodiscard]] Result<filter::GaussianState> predict_by_samples(
     const filter::GaussianState& state, const FrameInterval& interval, std::span<const ImuSample> samples,

@@ -10,7 +10,7 @@ namespace fusebench::prediction {
 
 namespace {
 
-/// The earlier one if two are as near.
+/// The earlier one if both are equally near.
 ImuSample nearest_sample(std::span<const ImuSample> samples, std::int64_t instant_ns) {
   const auto after = std::ranges::lower_bound(samples, instant_ns, {}, &ImuSample::timestamp_ns);
   if (after == samples.begin()) return *after;
@@ -35,7 +35,7 @@ std::span<const ImuSample> samples_around(std::span<const ImuSample> samples, st
 ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t instant_ns, double half_window_s) {
   check(!samples.empty(), "there are samples");
   const std::span<const ImuSample> window = samples_around(samples, instant_ns, half_window_s);
-  // A parabola beyond its points, or across a gap, makes noise much larger.
+  // Outside its points or across a gap, a parabola amplifies the noise.
   constexpr std::ptrdiff_t kMinOnASide = 2;
   const auto middle = std::ranges::lower_bound(window, instant_ns, {}, &ImuSample::timestamp_ns);
   if (middle - window.begin() < kMinOnASide || window.end() - middle < kMinOnASide)

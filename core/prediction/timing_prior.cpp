@@ -8,7 +8,7 @@ namespace fusebench::prediction {
 std::array<TimingPrior, 4> timing_priors(const SensorTiming& timing, const config::TermsConfig& terms,
                                          const config::InitialisationConfig& initialisation,
                                          const config::SelfCalibrationConfig& self_calibration) {
-  // Where motion is not compensated, nothing is learnt of the shutters and nothing depends on them.
+  // Without compensation of the motion, the shutters have no effect and are not estimated.
   const auto shutter = [&](bool is_estimated, double sigma_s) {
     return terms.motion_compensation && is_estimated ? sigma_s : 0.0;
   };

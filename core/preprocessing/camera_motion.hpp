@@ -1,4 +1,4 @@
-// The motion of the camera as the state of the IMU that it is mounted to gives it.
+// Motion of the camera from the state of its IMU.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -7,24 +7,24 @@
 
 namespace fusebench::preprocessing {
 
-/// Velocities of the camera in its own axes, lever arm included.
+/// Velocities of the camera in its own axes, including the lever arm.
 [[nodiscard]] CameraVelocity camera_velocity(const filter::FilterState& state, const SE3& T_imu_camera);
 
-/// The timing of a frame as the rig says and the state corrects it.
+/// Timing of a frame: that of the rig plus the corrections of the state.
 [[nodiscard]] FrameTiming estimated_timing(const RgbdFrame& frame, const SensorTiming& timing,
                                            const filter::SensorErrors& errors);
 
-/// Length of the motion blur at the image centre, by rotation alone (the depth is not known yet), pixels.
+/// Length of the motion blur at the image centre in pixels, by rotation alone (the depth is not given here).
 [[nodiscard]] double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
                                        double exposure_s);
 
-/// By how much a motion may differ from the one that a frame was compensated for.
+/// Allowed difference between the motion of a frame and the motion it was compensated for.
 struct VelocityTolerance {
   double angular_radps = 0;
   double linear_mps = 0;
 };
 
-/// True if a frame that was compensated for the motion before is off by too much for that of now.
+/// True if the difference between the compensated motion `before` and the motion `now` exceeds the tolerance.
 [[nodiscard]] bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now,
                                          const VelocityTolerance& tolerance);
 

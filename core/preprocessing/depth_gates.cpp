@@ -9,8 +9,8 @@ namespace fusebench::preprocessing {
 
 namespace {
 
-/// A row of gate_depth(), from the row before to the one after it. No branches, so that the compiler can
-/// vectorise it.
+/// Gates one row, given the previous, own and next row. Without branches, so that the compiler can vectorise
+/// it.
 void gate_row(const std::array<const float*, 3>& rows_m, int width, const config::DepthConfig& config,
               float* gated_m) {
   constexpr float kFar = std::numeric_limits<float>::infinity();

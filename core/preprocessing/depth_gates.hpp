@@ -1,4 +1,4 @@
-// Which depth measurements are used, and how noisy they are.
+// Selection of depth measurements, and their noise.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -24,12 +24,12 @@ inline DepthSigma::DepthSigma(const config::DepthConfig& config)
   return DepthSigma(config).at_m(depth_m);
 }
 
-/// Depth without unreliable measurements: values outside [min, max] and pixels at a depth edge become 0. Into
-/// another image, whose memory is used again.
+/// Copies depth without unreliable measurements: values outside [min, max] and pixels at a depth edge become
+/// 0. Reuses the memory of the result.
 void gate_depth(const DepthImage& depth_m, const config::DepthConfig& config, DepthImage& gated_m);
 
-/// True if there is depth at the pixel and at the eight around it at a distance of reach_px, as far as they
-/// are in the image, without a jump of more than `edge_jump` of the middle's depth. Reach 0: the pixel alone.
+/// True if the pixel and its eight neighbours at distance reach_px (those inside the image) have depth and
+/// differ by at most `edge_jump` of the depth at the pixel. With reach 0, tests the pixel alone.
 [[nodiscard]] bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, double edge_jump);
 
 }  // namespace fusebench::preprocessing

@@ -6,7 +6,7 @@
 
 namespace fusebench::preprocessing {
 
-/// The standard deviation of depth, for eight measurements at once.
+/// Standard deviation of depth for eight measurements.
 class DepthSigma {
  public:
   explicit DepthSigma(const config::DepthConfig& config);  ///< inline in depth_gates.hpp

@@ -1,4 +1,4 @@
-// Numbers that are smooth over an image, computed at nodes and interpolated linearly between them: one or two
+// Smooth functions over an image, computed at grid nodes with linear interpolation between them: one or two
 // operations a pixel instead of a hundred.
 #pragma once
 
@@ -14,12 +14,12 @@ namespace fusebench::preprocessing {
 template <std::size_t kCount>
 class NodeGrid {
  public:
-  // From node to node. A parabola y = c x^2 lies off its chords by c 8^2 at most between rows.
+  // Node spacing. A parabola y = c x^2 differs from its chords by at most c 8^2 between rows.
   static constexpr int kColumns = static_cast<int>(simd::kLanes);
   static constexpr int kRows = 16;
 
-  /// solve(u, v): the numbers at eight places of a row, pixels. Nodes may lie outside of the image, by less
-  /// than 64 columns and 16 rows.
+  /// solve(u, v): the numbers at eight pixels of a row. Nodes may be outside the image by less than 64
+  /// columns and 16 rows.
   template <class Solve>
   NodeGrid(int width, int height, const Solve& solve)
       : nodes_(((width / kColumns + 1 + kColumns - 1) / kColumns) * kColumns),
@@ -37,9 +37,9 @@ class NodeGrid {
     }
   }
 
-  /// The numbers of eight columns between two rows of nodes.
+  /// Numbers for eight columns between two rows of nodes.
   struct Cell {
-    /// `rows` below the upper nodes.
+    /// Values `rows` below the upper nodes.
     [[nodiscard]] simd::Float8 at(std::size_t i, float rows) const {
       return simd::multiply_add(rows, steps[i], values[i]);
     }
@@ -48,8 +48,8 @@ class NodeGrid {
     std::array<simd::Float8, kCount> steps;   ///< from one row to the next
   };
 
-  /// Of the columns from `column` on, and the rows of pixels [kRows * cell, kRows * (cell + 1)). Where
-  /// `column` is no multiple of eight, the last columns continue the line between the nodes before them.
+  /// Cell of eight columns from `column` on and the pixel rows [kRows * cell, kRows * (cell + 1)). If
+  /// `column` is not a multiple of eight, the last columns extrapolate from the nodes before them.
   [[nodiscard]] Cell cell(int column, int cell) const {
     const auto nodes = static_cast<std::size_t>(nodes_);
     const float* const upper =

@@ -6,14 +6,15 @@ namespace fusebench::preprocessing {
 
 namespace {
 
-/// Each iteration reduces the error by the stretch of the image: to hundredths, for the fastest motion to a
-/// fifth.
+/// Each iteration multiplies the error by the local stretch of the image: a few hundredths, for the fastest
+/// motion a fifth.
 constexpr int kIterationsForth = 6;
-/// Each reduces the error by the motion during the read-out of one row: to hundredths at most.
+/// Each iteration multiplies the error by the motion during the read-out of one row: at most a few
+/// hundredths.
 constexpr int kIterationsBack = 4;
 
-/// Coefficients of the parabolas through the displacements for inverse depths of 0, 1 and 2 / m. Those that
-/// do not depend on depth give exactly that.
+/// Coefficients of the parabolas through the displacements at inverse depths 0, 1 and 2 / m. Exact for
+/// displacements that do not depend on depth.
 std::array<simd::Float8, DisplacementParabola::kCount> parabola_through(const Displacement8& at_0,
                                                                         const Displacement8& at_1,
                                                                         const Displacement8& at_2) {
@@ -53,7 +54,7 @@ std::array<simd::Float8, Readout::kFromRows> Readout::from_rows(simd::Float8 u, 
   return {x0, x1, x2, y0, y1, y2, at_0.depth_factor, at_1.depth_factor - at_0.depth_factor};
 }
 
-/// The pixel that is carried to (u, v) is found by fixed-point iteration.
+/// Fixed-point iteration for the source pixel whose displaced position is (u, v).
 Readout::Carried Readout::forth(simd::Float8 u, float v, float inverse_depth,
                                 const Eigen::Matrix3f& R) const {
   Carried result;
@@ -68,7 +69,7 @@ Readout::Carried Readout::forth(simd::Float8 u, float v, float inverse_depth,
   return result;
 }
 
-/// When a point was read depends on the row where it is found.
+/// The read-out time of a point depends on the row of its projection.
 Displacement8 Readout::back(simd::Float8 u, float v, float inverse_depth, const Eigen::Matrix3f& R) const {
   const simd::Points now = ray(u, simd::all_lanes(v));
   Displacement8 result;
@@ -80,14 +81,14 @@ Displacement8 Readout::back(simd::Float8 u, float v, float inverse_depth, const 
   return result;
 }
 
-/// Rotation of the camera between the instant of the frame and that of a row, or the inverse.
+/// Rotation of the camera between the instant of the frame and that of a row, or its inverse.
 Eigen::Matrix3f Readout::turn_until(float v, float sign) const {
   const double time_s = static_cast<double>(sign * times_.at(v));
   return so3_exp(time_s * turn_radps_.cast<double>()).toRotationMatrix().cast<float>();
 }
 
-/// Rotated by what the camera turns in this time, to the second order. Times are those from one row to the
-/// one that its pixels come from: at 10 rad/s and 100 rows of 54 us the rest is a hundredth of a pixel.
+/// Rotates a point by the camera rotation in time_s, to second order. The time is the difference between two
+/// rows: at 10 rad/s and 100 rows of 54 us the remainder is a hundredth of a pixel.
 simd::Points Readout::rotated_on(const simd::Points& a, simd::Float8 time_s) const {
   const simd::Float8 half_squared = 0.5F * time_s * time_s;
   const simd::Points once = simd::cross(turn_, a);
@@ -101,15 +102,15 @@ simd::Points Readout::ray(simd::Float8 u, simd::Float8 v) const {
   return {(u - cx_) / fx_, (v - cy_) / fy_, simd::all_lanes(1.0F)};
 }
 
-/// Moved by what the camera moves in a time, of a point at unit depth (time x inverse depth = share).
+/// Translates a point at unit depth by the camera motion (share = time * inverse depth).
 simd::Points Readout::shifted(const simd::Points& point, simd::Float8 share) const {
   return {simd::multiply_add(share, simd::all_lanes(linear_mps_.x()), point.x),
           simd::multiply_add(share, simd::all_lanes(linear_mps_.y()), point.y),
           simd::multiply_add(share, simd::all_lanes(linear_mps_.z()), point.z)};
 }
 
-/// Displacement from the pixel of a ray to that of where it was carried; none behind the camera. Written as a
-/// difference of rays, so that zero motion gives a displacement of exactly zero.
+/// Displacement between the pixels of a ray and of the moved point; zero behind the camera. Written as a
+/// difference of rays, so zero motion gives exactly zero.
 Displacement8 Readout::between(const simd::Points& ray, const simd::Points& carried) const {
   const simd::Int8 in_front = carried.z > 0.0F;
   const simd::Float8 inverse_z = 1.0F / (in_front ? carried.z : simd::all_lanes(1.0F));

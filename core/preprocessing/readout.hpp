@@ -9,7 +9,7 @@
 
 namespace fusebench::preprocessing {
 
-/// When the rows of an image are exposed, after the frame's instant.
+/// Exposure times of the image rows relative to the instant of the frame.
 struct RowTimes {
   RowTimes(int rows, double delay_s, double readout_s)
       : first_s(static_cast<float>(delay_s - 0.5 * readout_s)),
@@ -27,8 +27,8 @@ struct Displacement8 {
   simd::Float8 y{};
 };
 
-/// A displacement as a parabola in the inverse depth of what is displaced: coefficients x0, x1, x2, y0, y1,
-/// y2. Through inverse depths of 0, 1 and 2 / m: of a motion by 20 mm at 0.4 m the rest is 0.01 px.
+/// Displacement as a parabola in inverse depth: coefficients x0, x1, x2, y0, y1, y2, through inverse depths
+/// 0, 1 and 2 / m. For a motion of 20 mm at 0.4 m the remainder is 0.01 px.
 struct DisplacementParabola {
   static constexpr std::size_t kCount = 6;
 
@@ -43,21 +43,21 @@ struct DisplacementParabola {
   }
 };
 
-/// A camera of constant velocity around a frame, and an image that was read meanwhile.
+/// Pixel displacements for a camera with constant velocity around a frame, with a rolling-shutter image.
 class Readout {
  public:
   Readout(const PinholeCamera& camera, const RowTimes& times, const CameraVelocity& velocity);
 
-  /// From pixels of the frame to where the points behind them were when their rows were read.
+  /// Displacement from pixels of the frame to the image positions of the same points at their row times.
   [[nodiscard]] std::array<simd::Float8, DisplacementParabola::kCount> to_rows(simd::Float8 u, float v) const;
 
-  /// Places among what from_rows() gives, after the parabolas.
+  /// Indices in the result of from_rows(), after the parabolas.
   static constexpr std::size_t kDepthFactor = DisplacementParabola::kCount;
   static constexpr std::size_t kDepthShift_m = kDepthFactor + 1;
   static constexpr std::size_t kFromRows = kDepthShift_m + 1;
 
-  /// From pixels of the frame to the pixels of the image that the motion carries there, by *their* inverse
-  /// depth (as the image measured it); and what their depth is times to be there, and plus.
+  /// Displacement from pixels of the frame to the image pixels that move there, by the inverse depth of the
+  /// image pixel; and the factor and summand that convert its depth.
   [[nodiscard]] std::array<simd::Float8, kFromRows> from_rows(simd::Float8 u, float v) const;
 
  private:
@@ -76,7 +76,7 @@ class Readout {
 
   RowTimes times_;
   Eigen::Vector3f turn_radps_;
-  simd::Points turn_;  // the same in all lanes
+  simd::Points turn_;  // equal in all lanes
   Eigen::Vector3f linear_mps_;
   float fx_, fy_, cx_, cy_;  // pixels
 };

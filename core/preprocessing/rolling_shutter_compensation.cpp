@@ -15,27 +15,27 @@ namespace fusebench::preprocessing {
 
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 32;  // whole cells of the grids
-/// Tolerance for border pixels whose motion is within rounding of zero.
+constexpr std::size_t kRowsPerChunk = 32;  // multiple of the cell height
+/// Tolerance for border pixels whose motion is zero except for rounding.
 constexpr float kRounding_px = 1e-4F;
-/// Fixed-point iterations where no pixel above gives an initial depth.
+/// Number of fixed-point iterations without an initial depth from the pixel above.
 constexpr int kInitialDepthIterations = 3;
 
 using simd::lane_details::byte_of;
 
 using Bytes [[gnu::vector_size(32)]] = std::uint8_t;  ///< of eight words
 
-/// 1 / depth; 0 where there is no depth, which counts as infinitely far: rotation alone. The parabolas are
-/// not valid nearer than the minimum range of the camera.
+/// 1 / depth; 0 without depth, which means infinitely far: rotation only. The parabolas are not valid below
+/// the minimum range of the camera.
 simd::Float8 inverse_depth(simd::Float8 depth_m) {
   constexpr float kNearest_m = 0.1F;
   const simd::Int8 measured = depth_m > 0.0F;
   return measured ? 1.0F / simd::max(depth_m, simd::all_lanes(kNearest_m)) : simd::Float8{};
 }
 
-/// Interpolates one channel of four neighbours, given as bytes of words, and rounds.
+/// Interpolates one channel of four neighbours, given as bytes of words, with rounding.
 struct Bilinear {
-  simd::Float8 right;  // shares
+  simd::Float8 right;  // weights
   simd::Float8 down;
 
   [[nodiscard]] simd::Int8 operator()(simd::Float8 upper_left, simd::Float8 upper_right,
@@ -62,7 +62,7 @@ class SourceBounds {
   explicit SourceBounds(const PinholeCamera& camera)
       : last_x_(static_cast<float>(camera.width_px - 1)), last_y_(static_cast<float>(camera.height_px - 1)) {}
 
-  /// Displaced from eight pixels of a row; kept inside the image.
+  /// Positions displaced from eight pixels of a row, clamped to the image.
   [[nodiscard]] ImagePositions displaced(int column, int row, const Displacement8& by) const {
     const simd::Float8 x = static_cast<float>(column) + simd::kLaneNumber + by.x;
     const simd::Float8 y = static_cast<float>(row) + by.y;
@@ -71,7 +71,7 @@ class SourceBounds {
     return {held(x, last_x_), held(y, last_y_), inside};
   }
 
-  /// The pixel whose right and lower neighbours exist, at or before a place.
+  /// The pixel at or before a position whose right and lower neighbours exist.
   [[nodiscard]] simd::Int8 left(simd::Float8 x) const {
     return simd::to_int(simd::min(x, simd::all_lanes(last_x_ - 1.0F)));
   }
@@ -80,7 +80,7 @@ class SourceBounds {
   }
 
  private:
-  /// NaN is clamped to the border too: nothing is read outside.
+  /// NaN is clamped to the border too, so no read is out of bounds.
   static simd::Float8 held(simd::Float8 values, float last) {
     return simd::min(simd::max(simd::Float8{}, values), simd::all_lanes(last));
   }
@@ -93,13 +93,13 @@ using ColorGrid = NodeGrid<DisplacementParabola::kCount>;
 static_assert(DepthGrid::kRows == ColorGrid::kRows && kRowsPerChunk % DepthGrid::kRows == 0,
               "cells are entered together");
 
-/// Where eight pixels of a row come from, if they have this depth.
+/// Displacement of eight pixels of a row, given their depth.
 template <class Cell>
 Displacement8 displacement(const Cell& cell, float rows, simd::Float8 inverse_depth) {
   return DisplacementParabola::at(inverse_depth, [&](std::size_t i) { return cell.at(i, rows); });
 }
 
-/// Depth at the frame's instant.
+/// Depth at the instant of the frame.
 class DepthCarrier {
  public:
   DepthCarrier(const RgbdFrame& source, const PinholeCamera& camera, const Readout& readout)
@@ -108,11 +108,11 @@ class DepthCarrier {
         grid_(camera.width_px, camera.height_px,
               [&](simd::Float8 u, float v) { return readout.from_rows(u, v); }) {}
 
-  /// Eight columns, from row to row: the depth found above a pixel is the initial value of its search.
+  /// Eight columns that are processed row by row: the depth found above a pixel starts its search.
   struct Columns {
-    int column = 0;  ///< the first
+    int column = 0;  ///< first column
     DepthGrid::Cell cell;
-    simd::Float8 inverse_depth{};  ///< measured, above
+    simd::Float8 inverse_depth{};  ///< measured in the row above
   };
 
   void enter_cell(Columns& columns, int cell) const { columns.cell = grid_.cell(columns.column, cell); }
@@ -122,7 +122,8 @@ class DepthCarrier {
     for (int i = 0; i + 1 < kInitialDepthIterations; ++i) std::ignore = depth_m(columns, row);
   }
 
-  /// The depth pixel of these columns that their own motion carries to a row, carried there.
+  /// Depth in a row of these columns: of the depth pixel that moves there, transformed to the instant of the
+  /// frame.
   [[nodiscard]] simd::Float8 depth_m(Columns& columns, int row) const {
     const auto rows = static_cast<float>(row % DepthGrid::kRows);
     const ImagePositions from =
@@ -130,7 +131,7 @@ class DepthCarrier {
     const simd::Float8 measured_m = simd::gather(
         source_m_.data.data(), simd::to_int(from.y + 0.5F) * source_m_.width + simd::to_int(from.x + 0.5F));
     const simd::Int8 measured = measured_m > 0.0F;
-    // Across a hole the depth before it remains the initial value, unless it leads out of the image.
+    // At a hole the previous depth remains the initial value, unless it leads out of the image.
     const simd::Float8 before = from.inside ? columns.inverse_depth : simd::Float8{};
     columns.inverse_depth = measured ? inverse_depth(measured_m) : before;
     const simd::Float8 carried_m =
@@ -145,7 +146,7 @@ class DepthCarrier {
   DepthGrid grid_;
 };
 
-/// Source positions of colour and grey, and sampling there.
+/// Source positions of colour and grey, and their sampling.
 class ColorSource {
  public:
   ColorSource(const RgbdFrame& source, const PinholeCamera& camera, const Readout& readout)
@@ -156,7 +157,7 @@ class ColorSource {
 
   [[nodiscard]] ColorGrid::Cell cell(int column, int cell) const { return grid_.cell(column, cell); }
 
-  /// Of eight pixels of a row, whose cell this is.
+  /// Source positions of eight pixels of a row in the given cell.
   [[nodiscard]] ImagePositions places(const ColorGrid::Cell& cell, int column, int row,
                                       simd::Float8 depth_m) const {
     const auto rows = static_cast<float>(row % ColorGrid::kRows);
@@ -214,12 +215,12 @@ class ColorSource {
   ColorGrid grid_;
 };
 
-/// Independent columns, interleaved: each step is done for all of them before the next one, which hides
-/// memory latency.
+/// Interleaves independent groups of columns: each step is done for all groups before the next step, which
+/// hides memory latency.
 constexpr int kGroupsPerTile = 8;
 constexpr int kTileWidth = kGroupsPerTile * static_cast<int>(simd::kLanes);
 
-/// Calls use(group, column) for every eight columns of a tile. The last ones of a row repeat some of those
+/// Calls use(group, column) for each eight columns of a tile. The last group of a row may overlap the one
 /// before.
 template <class Use>
 void for_each_group(int first_column, int width, const Use& use) {
@@ -229,7 +230,7 @@ void for_each_group(int first_column, int width, const Use& use) {
     use(group++, std::min(x, width - static_cast<int>(simd::kLanes)));
 }
 
-/// Compensates depth and grey of a tile of an image, row by row.
+/// Compensates depth and grey of a tile, row by row.
 void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int first_column, int first_row,
                      int end_row, RgbdFrame& result) {
   std::array<DepthCarrier::Columns, kGroupsPerTile> depth;
@@ -250,7 +251,7 @@ void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int
                    [&](std::size_t group, int) { carried_m[group] = carrier.depth_m(depth[group], row); });
     for_each_group(first_column, width, [&](std::size_t group, int column) {
       places[group] = colors.places(color[group], column, row, carried_m[group]);
-      // Not used without colour.
+      // Depth without colour is not used.
       simd::store(places[group].inside ? carried_m[group] : simd::Float8{}, &result.depth_m(column, row));
     });
     for_each_group(first_column, width, [&](std::size_t group, int column) {
@@ -259,7 +260,7 @@ void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int
   }
 }
 
-/// Compensates colour of a tile, whose depth this is.
+/// Compensates the colour of a tile, given its compensated depth.
 void compensate_tile(const ColorSource& colors, const DepthImage& depth_m, int first_column, int first_row,
                      int end_row, ColorImage& result) {
   std::array<ColorGrid::Cell, kGroupsPerTile> cells;

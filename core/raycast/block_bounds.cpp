@@ -14,7 +14,7 @@ constexpr int kTile_px = 16;
 constexpr float kTiles_per_px = 1.0F / static_cast<float>(kTile_px);
 constexpr double kMargin_px = 1.0;
 
-/// The tiles along one axis that a sphere may be seen in, from its extent across the axis and along z.
+/// Range of tiles along one axis that a sphere may cover, from its extent along that axis and along z.
 BlockBounds::Range range_of(double low_m, double high_m, double near_m, double far_m, double focal_px,
                             double centre_px, int tiles) {
   const double first_px = focal_px * low_m / (low_m > 0 ? far_m : near_m) + centre_px - kMargin_px;
@@ -27,7 +27,7 @@ BlockBounds::Range range_of(double low_m, double high_m, double near_m, double f
 
 }  // namespace
 
-/// Of a block or region, camera axes, metres.
+/// Bounding sphere of a block or region, camera axes, metres.
 struct BlockBounds::Sphere {
   Vector3d centre_camera;
   double radius_m;
@@ -50,7 +50,7 @@ BlockBounds::BlockBounds(const tsdf::TsdfVolume& volume, const PinholeCamera& ca
 }
 
 void BlockBounds::add_region(const tsdf::TsdfVolume& volume, std::size_t region) {
-  // Samples reach one voxel beyond their block.
+  // Interpolation uses samples up to one voxel beyond a block.
   const auto radius_m = [&](int voxels) { return (0.5 * std::sqrt(3.0) * voxels + 1.0) * voxel_m_; };
   const auto centre = [&](const Eigen::Vector3i& index, int voxels) -> Vector3d {
     const Vector3d centre_world = (index.cast<double>().array() + 0.5) * (voxels * voxel_m_);

@@ -1,4 +1,4 @@
-// Lower bounds on the depth at which the rays of a camera can meet the model.
+// Lower bounds of the depth at which the rays of a camera can meet the model.
 #pragma once
 
 #include "core/base/image.hpp"
@@ -9,12 +9,12 @@
 
 namespace fusebench::raycast {
 
-/// For each tile of an image, the z-depth of the nearest block of a volume that any of its rays passes, so
-/// that rays can skip the empty space before it. Conservative: blocks count as the spheres around them, with
-/// what interpolation reaches beyond.
+/// For each image tile, the z-depth of the nearest block that any of its rays passes, so that rays can skip
+/// the empty space before it. Conservative: uses the bounding spheres of the blocks, enlarged by the reach of
+/// interpolation.
 class BlockBounds {
  public:
-  /// Numbers of tiles, both included.
+  /// Range of tile indices, inclusive.
   struct Range {
     int first;
     int last;
@@ -22,16 +22,16 @@ class BlockBounds {
     [[nodiscard]] bool empty() const { return last < first; }
   };
 
-  /// Blocks beyond depth.max_m do not count.
+  /// Ignores blocks beyond depth.max_m.
   BlockBounds(const tsdf::TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
               const config::DepthConfig& depth);
 
-  /// Metres; infinite where there are no blocks, 0 for pixels outside of the image.
+  /// Metres; infinite without blocks, 0 for pixels outside the image.
   [[nodiscard]] simd::Float8 nearest_m(simd::Float8 u_px, simd::Float8 v_px) const;
 
  private:
   struct Sphere;
-  /// Where a sphere may be seen, and how near it is (metres).
+  /// Tiles that a sphere may cover, and its smallest depth (metres).
   struct Tiles {
     Range columns;
     Range rows;

@@ -1,4 +1,4 @@
-// Rays of a camera through a field, eight at a time: definition and intersections.
+// Eight camera rays through a field: definition and intersections.
 #pragma once
 
 #include "core/raycast/surface_point.hpp"
@@ -16,10 +16,10 @@ struct RayLanes {
 
   Eigen::Vector3f origin;
   simd::Points direction;    ///< per metre of z-depth
-  simd::Float8 z_per_voxel;  ///< metres of z-depth for a voxel along the ray
+  simd::Float8 z_per_voxel;  ///< z-depth in metres of one voxel along the ray
 };
 
-/// The rays of a camera's pixels in a lattice of voxels.
+/// The rays of the pixels of a camera in voxel coordinates.
 class PixelRays {
  public:
   PixelRays(const PinholeCamera& camera, const SE3& T_world_camera, double voxel_m)
@@ -29,7 +29,7 @@ class PixelRays {
         cx_px_(static_cast<float>(camera.cx_px)),
         cy_px_(static_cast<float>(camera.cy_px)) {}
 
-  /// `origin`: the camera's place in the lattice.
+  /// `origin`: position of the camera in voxels.
   [[nodiscard]] RayLanes through(simd::Float8 u_px, simd::Float8 v_px, const Eigen::Vector3f& origin) const {
     const simd::Float8 x = (u_px - cx_px_) * per_fx_;
     const simd::Float8 y = (v_px - cy_px_) * per_fy_;
@@ -45,18 +45,18 @@ class PixelRays {
   }
 
  private:
-  Eigen::Matrix3f axes_;  // columns: the ray by u, by v (on the plane z = 1) and along the optical axis
+  Eigen::Matrix3f axes_;  // columns: derivative of the ray by u and v (plane z = 1), and the optical axis
   float per_fx_, per_fy_, cx_px_, cy_px_;
 };
 
-/// Where the field is near zero, a step goes this far beyond the zero that it predicts: two samples on either
-/// side of a crossing locate it better than many before it.
+/// Near the surface, a step goes this far beyond the predicted zero: two samples on both sides of a crossing
+/// locate it better than many samples before it.
 inline constexpr float kBeyond_voxels = 0.75F;
 
-/// Two points of each ray with the surface between them: the field is + in front, - behind. NaN where there
-/// is none yet.
+/// Two points of each ray with the surface between them: the field is + at the front point and - at the back
+/// point. NaN until set.
 struct Brackets {
-  /// Takes samples of the field in the lanes `front` and `back` as the points there.
+  /// Stores samples of the field in the lanes `front` and `back`.
   void take(simd::Int8 front, simd::Int8 back, simd::Float8 z_m, simd::Float8 distance_m) {
     front_z_m = front ? z_m : front_z_m;
     front_m = front ? distance_m : front_m;
@@ -67,19 +67,19 @@ struct Brackets {
     return simd::multiply_add(front_m / (front_m - back_m), back_z_m - front_z_m, front_z_m);
   }
   [[nodiscard]] simd::Float8 middle() const { return 0.5F * (front_z_m + back_z_m); }
-  /// The crossing is known well enough.
+  /// True if the crossing is located within tolerance.
   [[nodiscard]] simd::Int8 are_narrow(simd::Float8 z_per_voxel) const {
     constexpr float kNarrow_voxels = 0.05F;
     return back_z_m - front_z_m <= kNarrow_voxels * z_per_voxel;
   }
 
   simd::Float8 front_z_m = tsdf::not_a_number();
-  simd::Float8 front_m{};  ///< field
+  simd::Float8 front_m{};  ///< field values
   simd::Float8 back_z_m = tsdf::not_a_number();
   simd::Float8 back_m{};
 };
 
-/// The field there is zero within tolerance.
+/// True if the field is zero within tolerance.
 [[nodiscard]] inline simd::Int8 is_zero(simd::Float8 distance_m, float voxel_m) {
   constexpr float kZero_voxels = 0.02F;
   return simd::abs(distance_m) < kZero_voxels * voxel_m;
@@ -92,8 +92,8 @@ struct Hits {
   simd::Points normal_world{};
 };
 
-/// Crossings at these depths, with the gradient of the field there. They go into the surface; a gradient
-/// along the ray is noise at the border of the observed surface, not a normal.
+/// Crossings at these depths, with the gradient of the field as the normal. Valid ones enter the surface; a
+/// gradient along the ray is noise at the border of the observed surface.
 [[nodiscard]] inline Hits hits_at(simd::Int8 found, simd::Float8 depth_m, const simd::Points& gradient,
                                   const simd::Points& direction) {
   Hits hits;

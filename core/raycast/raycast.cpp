@@ -14,21 +14,22 @@
 namespace fusebench::raycast {
 namespace {
 
-// Seen from the side, the field overstates the distance; a step of less than its value rarely steps over the
-// surface, and where it steps into unobserved space, the march repeats that stretch in fine steps.
+// At grazing incidence the field overestimates the distance. A step of less than its value rarely crosses the
+// surface; after a step into unobserved space, the march repeats that part in fine steps.
 constexpr float kStepShare = 0.8F;
 constexpr float kFineStep_voxels = 0.5F;
-// The band before a surface is at least two voxels wide.
+// The observed band in front of a surface is at least two voxels wide.
 constexpr float kUnknownStep_voxels = 1.5F;
-// Further from the surface than this the nearest voxel is accurate enough; nearer, the field is interpolated.
+// Beyond this distance to the surface the nearest voxel is accurate enough; closer, the field is
+// interpolated.
 constexpr float kNear_voxels = 1.75F;
 constexpr int kMaxRefinements = 24;
 constexpr int kBlockShift = 3;   // voxels to blocks
 constexpr int kRegionShift = 5;  // voxels to regions
 
 struct Rays : RayLanes {
-  /// Remaining z-depth of a point on the rays in the cube with this index along each axis; point and cube in
-  /// units of `side` voxels.
+  /// z-depth from a point on the rays to the end of the cube with this index; point and cube in units of
+  /// `side` voxels.
   [[nodiscard]] simd::Float8 z_to_leave(const simd::Points& point, const tsdf::LatticePoints& cube,
                                         simd::Float8 side) const {
     const auto along = [&](simd::Float8 from, simd::Int8 index, simd::Float8 inverse_step) {
@@ -42,23 +43,23 @@ struct Rays : RayLanes {
   simd::Points inverse;  ///< of the direction
 };
 
-/// State of eight rays that are marched together.
+/// State of eight rays that march together.
 struct MarchState {
   Rays rays;
   simd::Float8 end_m;
   simd::Float8 z_m;
   simd::Float8 free_z_m =
-      tsdf::not_a_number();    ///< of the sample before, if it was observed and in front of a surface
-  simd::Float8 free_m{};       ///< field there
-  simd::Float8 careful_z_m{};  ///< up to here in fine steps
+      tsdf::not_a_number();    ///< of the previous sample, if it was observed and in front of a surface
+  simd::Float8 free_m{};       ///< field at that sample
+  simd::Float8 careful_z_m{};  ///< fine steps up to this depth
   simd::Int8 active{};
-  tsdf::LatticePoints voxel;  ///< nearest to the rays here
+  tsdf::LatticePoints voxel;  ///< nearest voxel to the rays
   tsdf::TsdfLanes::Location location;
-  simd::Float8 nearest_m{};  ///< field of the voxel
+  simd::Float8 nearest_m{};  ///< field of the nearest voxel
   Brackets brackets;
 };
 
-/// Eight pixels, and the requested interval of their rays (z-depth).
+/// Eight pixels and the requested interval of their rays (z-depth).
 struct RequestedRays {
   simd::Float8 u{};
   simd::Float8 v{};
@@ -66,9 +67,9 @@ struct RequestedRays {
   simd::Float8 end_m = simd::all_lanes(std::numeric_limits<float>::infinity());
 };
 
-// Marches along rays of one camera, eight at a time, with several such groups interleaved: the processor
-// computes the step of one group while the memory reads of another are pending. A ray's result does not
-// depend on its group.
+// Marches along rays of one camera, eight at a time, with several groups interleaved: the processor computes
+// a step of one group while memory reads of another are pending. The result of a ray does not depend on its
+// group.
 class RayMarcher {
  public:
   RayMarcher(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
@@ -93,7 +94,7 @@ class RayMarcher {
       states[i] = begin(pixels[i]);
       if (simd::any(states[i].active)) unfinished[count++] = &states[i];
     }
-    // Reads that may miss the cache are issued for all groups before any result is needed.
+    // Issues reads that may miss the cache for all groups before it uses any result.
     while (count > 0) {
       const std::span<MarchState*> running = std::span(unfinished).first(count);
       for (MarchState* state : running) locate(*state);
@@ -109,8 +110,7 @@ class RayMarcher {
  private:
   [[nodiscard]] Rays rays_of(simd::Float8 u, simd::Float8 v) const {
     Rays rays{pixels_.through(u, v, origin_), {}};
-    // Parallel to a face: the distance to leave it is a huge finite number rather than the NaN of 0 *
-    // infinity.
+    // For rays parallel to a face, the distance to it is a huge finite number, not the NaN of 0 * infinity.
     const auto inverse = [](simd::Float8 step) {
       return step == 0.0F ? simd::all_lanes(1e30F) : 1.0F / step;
     };
@@ -120,13 +120,13 @@ class RayMarcher {
 
   /// The field at the current points of the rays.
   struct Sample {
-    simd::Float8 distance_m;  // NaN where it was not observed
-    simd::Float8 empty_z_m;   // z-depth without any block, > 0 only where there is none
+    simd::Float8 distance_m;  // NaN if not observed
+    simd::Float8 empty_z_m;   // z-depth without any block; 0 inside a block
     simd::Int8 near;          // distance_m was interpolated
   };
 
   void locate(MarchState& state) const {
-    // Half a voxel more, so that the floor is the nearest voxel.
+    // Adds half a voxel, so that the floor is the nearest voxel.
     const simd::Points at = state.rays.at(state.z_m);
     state.voxel = {simd::floor_to_int(at.x + 0.5F), simd::floor_to_int(at.y + 0.5F),
                    simd::floor_to_int(at.z + 0.5F)};
@@ -168,8 +168,8 @@ class RayMarcher {
     return state;
   }
 
-  /// A step from front to back. Rays stop where the field changes from + to - between two neighbouring
-  /// observed samples.
+  /// Moves one step from front to back. Rays stop where the field changes from + to - between two
+  /// neighbouring observed samples.
   void step(MarchState& state) const {
     const Rays& rays = state.rays;
     const simd::Float8 fine_z = kFineStep_voxels * rays.z_per_voxel;
@@ -184,15 +184,14 @@ class RayMarcher {
     brackets.front_m = crossed ? state.free_m : brackets.front_m;
     brackets.back_z_m = crossed ? z_m : brackets.back_z_m;
     brackets.back_m = crossed ? now.distance_m : brackets.back_m;
-    // From free into unobserved space: a surface may have been stepped over, so repeat in fine steps.
+    // Step from free into unobserved space: it may have crossed a surface, so it is repeated in fine steps.
     const simd::Int8 repeat = was_free & ~observed & ~careful & (z_m - state.free_z_m > 1.01F * fine_z);
     const simd::Int8 give_up = ~observed & careful;
     const simd::Int8 free = observed & (now.distance_m >= 0.0F);
     const simd::Float8 field_z =
         (observed ? simd::abs(now.distance_m) : simd::Float8{}) * (rays.z_per_voxel * (1.0F / voxel_m_));
     const simd::Float8 beyond = field_z + kBeyond_voxels * rays.z_per_voxel;
-    // In unobserved space no surface can be missed before free space is met again, which is wider than this
-    // step.
+    // In unobserved space no surface is missed before the next free space, which is wider than this step.
     const simd::Float8 least_z = observed | was_free ? fine_z : kUnknownStep_voxels * rays.z_per_voxel;
     const simd::Float8 plain =
         simd::max(simd::max(least_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
@@ -215,9 +214,8 @@ class RayMarcher {
     return hits_at(found, depth_m, gradient, rays.direction);
   }
 
-  /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
-  /// with the middle, which always halves the bracket. Removes those from `found` that lie in unobserved
-  /// space.
+  /// Zeros in the brackets. Alternates between the zero of the chord, which is accurate for a smooth field,
+  /// and the middle, which always halves the bracket. Removes lanes in unobserved space from `found`.
   [[nodiscard]] simd::Float8 refined(const Rays& rays, Brackets bracket, simd::Int8& found) const {
     simd::Int8 open = found & ~bracket.are_narrow(rays.z_per_voxel);
     for (int i = 0; i < kMaxRefinements && simd::any(open); ++i) {

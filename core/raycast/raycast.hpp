@@ -1,4 +1,4 @@
-// Rays against the model: depth and surface normal as a camera at a given pose would see them.
+// Ray casting into the model: depth and surface normal for a camera pose.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@
 
 namespace fusebench::raycast {
 
-/// A pixel, and the requested interval of its ray (z-depth, metres; depth.min_m and max_m hold as well).
+/// A pixel and the requested interval of its ray (z-depth, metres; depth.min_m and max_m also apply).
 struct PixelRay {
   double u_px = 0;
   double v_px = 0;
@@ -21,12 +21,11 @@ struct PixelRay {
   float end_m = std::numeric_limits<float>::infinity();
 };
 
-/// The first zero crossings from front to back between depth.min_m and depth.max_m along the rays of pixels,
-/// by steps of the field's own size, refined to the crossing of the trilinear field; invalid where a ray
-/// meets no observed surface, crosses from behind, or the normal cannot be computed. Single precision: depth
-/// is good to a thousandth of a voxel. `field`: in view of the camera (field_in_view). In parallel; results
-/// in the order of the pixels, in memory that is used again. Neighbours in the list should be neighbours in
-/// the image.
+/// First zero crossings from front to back along the rays of pixels, between depth.min_m and depth.max_m. The
+/// step is the value of the field; the crossing is refined in the trilinear field. Invalid if a ray meets no
+/// observed surface, crosses from behind, or has no valid normal. Single precision: the depth is accurate to
+/// a thousandth of a voxel. `field`: in view of the camera (field_in_view). Parallel; results are in the
+/// order of the pixels, in reused memory. Neighbours in the list should be neighbours in the image.
 void raycast_pixels(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                     std::span<const PixelRay> pixels, const config::DepthConfig& depth,
                     const Workers& workers, std::vector<SurfacePoint>& points);

@@ -1,4 +1,4 @@
-// The surface behind one pixel.
+// The surface at one pixel.
 #pragma once
 
 #include "core/base/types.hpp"

@@ -10,17 +10,16 @@ namespace fusebench::raycast {
 
 namespace {
 
-// Search distance along the ray on either side of a measurement: the noise of both, and some voxels of margin
-// for the steps.
+// Search distance along the ray on both sides of a measurement: noise of measurement and model, plus some
+// voxels for the steps.
 constexpr float kReach_sigmas = 2.0F;
 constexpr float kReach_voxels = 2.0F;
-// The gradient at a point needs the voxel before its cell's base and two after it.
+// The gradient at a point uses the voxel before the base of its cell and two after it.
 constexpr int kBefore = 1;
 constexpr int kAfter = 2;
 constexpr int kMaxSamples = 10;
 
-// A larger brick takes longer to copy than looking up the blocks of each pixel, or exceeds the L2 cache (256
-// kB).
+// Copying a larger brick takes longer than a block lookup for each pixel, or exceeds the L2 cache (256 kB).
 constexpr double kVoxelsPerPixel = 200;
 constexpr double kMaxVoxels = 65536;
 constexpr std::size_t kFewPixels = 32;
@@ -35,7 +34,7 @@ struct SurfaceSearch::Box {
   tsdf::VoxelIndex last;
 };
 
-/// Eight pixels; lanes beyond the last one repeat it.
+/// Eight pixels; unused lanes repeat the last one.
 struct SurfaceSearch::PixelGroup {
   simd::Float8 u_px;
   simd::Float8 v_px;
@@ -65,7 +64,7 @@ void SurfaceSearch::find_near_measurements(std::span<const ExpectedSurface> pixe
     brick.copy(field_.volume(), box.first, box.last);
     find_in(brick, brick.origin_voxel().cast<double>(), true, pixels, surfaces);
   } else if (pixels.size() > kFewPixels) {
-    // An edge between near and far, or pixels that are far apart: the halves are tried separately.
+    // An edge between near and far, or distant pixels: each half is searched separately.
     const std::size_t half = pixels.size() / 2;
     find_near_measurements(pixels.first(half), brick, surfaces.first(half));
     find_near_measurements(pixels.subspan(half), brick, surfaces.subspan(half));
@@ -102,7 +101,7 @@ SurfaceSearch::PixelGroup SurfaceSearch::group_of(std::span<const ExpectedSurfac
   return group;
 }
 
-/// The voxels around all parts of rays that are searched.
+/// Voxels around all searched parts of rays.
 SurfaceSearch::Box SurfaceSearch::box_around(std::span<const ExpectedSurface> pixels) const {
   constexpr float kFar = std::numeric_limits<float>::max();
   simd::Points low = {simd::all_lanes(kFar), simd::all_lanes(kFar), simd::all_lanes(kFar)};
@@ -137,7 +136,7 @@ Hits SurfaceSearch::search(const PixelGroup& group, const Eigen::Vector3f& origi
   simd::Float8 crossing_m = group.depth_m;
   simd::Int8 found{};
   simd::Int8 open = (z_m >= begin_m) & (z_m <= end_m);
-  simd::Int8 halve{};  // the middle of the bracket is next, after the zero of its chord
+  simd::Int8 halve{};  // next: middle of the bracket, after the zero of its chord
   for (int i = 0; i < kMaxSamples && simd::any(open); ++i) {
     const simd::Float8 distance_m = field.sample(rays.at(z_m));
     open &= distance_m == distance_m;

@@ -1,5 +1,5 @@
-// The model's surface where a camera has measured one: a few steps from the measurement to the zero of the
-// field beside it, instead of marching along the ray.
+// Finds the model's surface near a measured one: a few steps from the measurement to the nearest zero of the
+// field, instead of marching along the ray.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace fusebench::raycast {
 
-/// A pixel, and where along its ray a surface is expected.
+/// A pixel and the expected depth of its surface.
 struct ExpectedSurface {
   float u_px = 0;
   float v_px = 0;
   float depth_m = 0;
-  float reach_m = 0;  ///< no further than this from there
+  float reach_m = 0;  ///< largest distance from the expected depth
 };
 
 class SurfaceSearch {
@@ -27,13 +27,13 @@ class SurfaceSearch {
   SurfaceSearch(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                 const config::DepthConfig& depth);
 
-  /// The zero of the trilinear field that the field at the expected place leads to, to a fiftieth of a voxel,
-  /// with the normal there. Where there is none within reach, or the search leaves observed space, the result
-  /// is invalid: then the ray has to be marched (raycast_pixels).
+  /// Follows the field from the expected position to a zero of the trilinear field, to a fiftieth of a voxel,
+  /// and computes the normal. Invalid if there is no zero within reach or the search leaves observed space;
+  /// then use raycast_pixels().
   void find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const;
 
-  /// The same for pixels that lie close together in the image and in depth, and no further from the expected
-  /// place than noise explains. `brick`: workspace.
+  /// Variant for pixels that are close together in image and depth, with an error of the expected depth
+  /// within the noise. `brick`: workspace.
   void find_near_measurements(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
                               std::span<SurfacePoint> surfaces) const;
 

@@ -21,8 +21,9 @@ namespace fusebench::relocalisation {
 
 namespace {
 
-constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less, or look less alike, add nothing
-constexpr std::size_t kSampleStep = 4;   // every fourth feature of an image ranks the keyframes
+// keyframes with less overlap or similarity do not improve the result
+constexpr std::size_t kMostAligned = 3;
+constexpr std::size_t kSampleStep = 4;  // uses every fourth feature of an image to rank the keyframes
 
 double angle_between_axes_rad(const SE3& a, const SE3& b) {
   const Vector3d axis_a = a.rotation * Vector3d::UnitZ();
@@ -30,8 +31,8 @@ double angle_between_axes_rad(const SE3& a, const SE3& b) {
   return std::atan2(axis_a.cross(axis_b).norm(), axis_a.dot(axis_b));
 }
 
-/// A frame with so many corners of full resolution has enough features but in odd cases (all depth in one
-/// corner of a richly textured image), so that they need not be looked for.
+/// A frame with this many full-resolution corners has enough features, with rare exceptions (all depth in one
+/// corner of a richly textured image), so they are not detected.
 bool has_plenty_of_corners(const GreyImage& grey, const DepthImage& depth_m, const config::Config& config) {
   const std::vector<Vector2d> corners_px = places::find_corners(grey, config.place_features);
   const auto with_depth = std::count_if(corners_px.begin(), corners_px.end(), [&](const Vector2d& px) {
@@ -50,7 +51,7 @@ std::vector<places::SeenPoint> seen_points(std::span<const places::PlaceFeature>
   return seen;
 }
 
-/// With the covariance of a pose in the camera of the keyframe.
+/// Converts a pose in the camera frame of the keyframe, with its covariance, to the world.
 FoundPlace found_from(const Keyframe& keyframe, const SE3& T_keyframe_camera, const Matrix6d& covariance) {
   FoundPlace found;
   found.T_world_camera = keyframe.T_world_camera * T_keyframe_camera;
@@ -58,7 +59,7 @@ FoundPlace found_from(const Keyframe& keyframe, const SE3& T_keyframe_camera, co
   return found;
 }
 
-/// The pose by one keyframe, if it is certain.
+/// Pose relative to one keyframe, if it is certain.
 std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, const Keyframe& keyframe,
                                    std::span<const places::FeatureMatch> matches, const PinholeCamera& camera,
                                    const config::Config& config) {
@@ -74,24 +75,26 @@ std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, 
   return found;
 }
 
-/// Without those that fit much worse than the best. Of equal ones those that were found first stay first.
+/// Removes places with much less support than the best; stable order for equal support.
 std::vector<FoundPlace> comparable_best_first(std::vector<FoundPlace> found,
                                               const config::RelocalisationConfig& config) {
   std::ranges::stable_sort(found, std::ranges::greater{}, &FoundPlace::support);
-  std::erase_if(found, [best = found.empty() ? 0.0 : found.front().support, &config](
-                           const FoundPlace& place) { return place.support < config.rival_support * best; });
+  std::erase_if(found,
+                [best = found.empty() ? 0.0 : found.front().support, &config](const FoundPlace& place) {
+                  return place.support < config.ambiguous_support * best;
+                });
   return found;
 }
 
 }  // namespace
 
-/// 1 where the spacing ends.
+/// Distance of two poses divided by the spacing of keyframes: 1 at the spacing.
 double Keyframes::separation(const SE3& a, const SE3& b) const {
   return std::max((a.translation - b.translation).norm() / config_.relocalisation.keyframe_distance_m,
                   angle_between_axes_rad(a, b) / radians(config_.relocalisation.keyframe_angle_deg));
 }
 
-/// So much that it is worth the change.
+/// True if the new frame is so much sharper that it should replace the kept one.
 bool Keyframes::is_sharper(double blur_px, double blur_before_px) const {
   const config::RelocalisationConfig& config = config_.relocalisation;
   return blur_before_px > config.blurred_px && blur_px < config.sharper_factor * blur_before_px;
@@ -132,7 +135,7 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
 
 void Keyframes::move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
   for (Keyframe& keyframe : kept_) keyframe.T_world_camera = T_world_camera_at(keyframe.timestamp_ns);
-  featureless_.reset();  // at worst the same bare wall is looked at once more
+  featureless_.reset();  // a repeated search of the same featureless area is acceptable
 }
 
 void Keyframes::adopt(const Keyframes& other, const SE3& T_world_other) {
@@ -144,7 +147,7 @@ void Keyframes::adopt(const Keyframes& other, const SE3& T_world_other) {
 }
 
 void Keyframes::drop_most_crowded() {
-  // Of the nearest two the earlier one goes: the later one shows the place as it is now.
+  // Removes the earlier one of the nearest two, since the later one shows the current state of the place.
   std::size_t crowded = 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -198,9 +201,10 @@ std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   std::vector<FoundPlace> found;
   double best_support = 0;
   for (const auto& [k, matches] : candidates) {
-    // So few matches cannot fit nearly as well as the best.
+    // So few matches cannot reach a support comparable to the best.
     const auto count = static_cast<double>(matches.size());
-    if (matches.size() < min_inliers || count < config_.relocalisation.rival_support * best_support) break;
+    if (matches.size() < min_inliers || count < config_.relocalisation.ambiguous_support * best_support)
+      break;
     std::optional<FoundPlace> place = place_by(query, kept_[k], matches, camera_, config_);
     if (!place) continue;
     place->keyframe = k;
@@ -210,7 +214,7 @@ std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   return comparable_best_first(std::move(found), config_.relocalisation);
 }
 
-/// With what depth is looked for by.
+/// Computes the small images and codes for the search by depth.
 void Keyframes::complete(Keyframe& keyframe) const {
   if (keyframe.small) return;
   keyframe.small = places::small_images_of(keyframe.grey, keyframe.depth.unpacked_m());

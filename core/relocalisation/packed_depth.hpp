@@ -1,4 +1,4 @@
-// A depth image in half the memory, for those that are kept and seldom read.
+// A depth image in half the memory, for images that are kept and seldom read.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace fusebench::relocalisation {
 
-/// Depth in steps of 1/65535 of the image's greatest one: of 5 m, to 0.04 mm, a thirtieth of the least noise
-/// of a depth sensor. No measurement stays none, and a measurement stays one.
+/// Depth in steps of 1/65535 of the largest depth of the image: 0.04 mm at 5 m, a thirtieth of the smallest
+/// sensor noise. Preserves whether a pixel has a measurement.
 class PackedDepth {
  public:
   PackedDepth() = default;
-  /// Depth is finite and not negative.
+  /// Depth must be finite and not negative.
   explicit PackedDepth(const DepthImage& depth_m);
 
   [[nodiscard]] DepthImage unpacked_m() const;

@@ -16,7 +16,8 @@ namespace {
 constexpr double kDegreesOfFreedom = 3;  // of the Student t distribution
 constexpr double kElsewhere = 2;         // in units of the keyframes' spacing
 
-/// Of t with k = 6 dimensions: Gamma((nu + k) / 2) / (Gamma(nu / 2) (nu pi)^(k / 2)).
+/// Normalisation of the t distribution in k = 6 dimensions: Gamma((nu + k) / 2) / (Gamma(nu / 2) (nu pi)^(k /
+/// 2)).
 double normalisation() {
   constexpr double kSize = filter::kPoseSize;
   return std::exp(std::lgamma(0.5 * (kDegreesOfFreedom + kSize)) - std::lgamma(0.5 * kDegreesOfFreedom)) /
@@ -47,7 +48,7 @@ bool are_elsewhere(const SE3& T_world_a, const SE3& T_world_b, const config::Rel
 }
 
 void PlaceOdds::measure_spacing(std::span<const RelocalisedPose> candidates) {
-  // Of a room that looks alike on two sides only the direction differs.
+  // In a room with two similar sides, only the direction differs.
   const double least_m = kElsewhere * config_.keyframe_distance_m;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (std::size_t j = i + 1; j < candidates.size(); ++j) {
@@ -60,8 +61,8 @@ void PlaceOdds::measure_spacing(std::span<const RelocalisedPose> candidates) {
   }
 }
 
-/// Of the most likely pose at that distance from the place: towards the prediction and beyond it, or along
-/// the axis of which dead reckoning knows least.
+/// Density of the most likely pose at that distance from the place: towards the prediction and beyond it, or
+/// along the least certain axis of dead reckoning.
 double PlaceOdds::density_at_spacing(const RelocalisedPose& place,
                                      const filter::GaussianState& prediction) const {
   if (!spacing_m_) return 0;
@@ -94,7 +95,7 @@ std::optional<std::size_t> PlaceOdds::decide(std::span<const RelocalisedPose> ca
       first = i;
     }
   }
-  // Written so that NaN is refused as well.
+  // Written so that NaN is rejected too.
   if (!(densities[likeliest] >= config_.min_odds * others)) return std::nullopt;
   return first;
 }

@@ -11,14 +11,14 @@ namespace fusebench::relocalisation {
 
 namespace {
 
-/// The pose of the camera as the filter wants it: of the IMU.
+/// Converts the pose of the camera to that of the IMU.
 RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyframe, const SE3& T_imu_camera,
                                  const config::RelocalisationConfig& config) {
   const SE3 T_camera_imu = T_imu_camera.inverse();
   RelocalisedPose pose{found.T_world_camera * T_camera_imu, keyframe.T_world_camera * T_camera_imu};
   const Matrix6d to_imu = filter::pose_transport(pose.T_world_imu, found.T_world_camera);
   pose.covariance = to_imu * found.covariance * to_imu.transpose();
-  // Drift of the model since the keyframe was fused into it.
+  // Drift of the model since the fusion of the keyframe.
   const double rotation_rad = config.keyframe_rotation_sigma_rad;
   const double position_m = config.keyframe_position_sigma_m;
   pose.reference_covariance.diagonal() << Vector3d::Constant(rotation_rad * rotation_rad),
@@ -30,11 +30,11 @@ double position_sigma_m(const filter::GaussianState& prediction) {
   return largest_sigma(prediction.covariance.block<3, 3>(filter::kPosition, filter::kPosition));
 }
 
-/// How far off a predicted camera sees a surface at some distance.
+/// Error of a predicted surface position at the viewing distance.
 double reach_m(const filter::GaussianState& prediction) {
   constexpr double kSigmas = 2;
   constexpr double kDistance_m = 2;
-  constexpr double kLargest_m = 0.5;  // beyond, surfaces are taken for one another
+  constexpr double kLargest_m = 0.5;  // beyond it, alignment confuses different surfaces
   const double rotation_sigma_rad =
       largest_sigma(prediction.covariance.block<3, 3>(filter::kRotation, filter::kRotation));
   const double reach_m = kSigmas * (position_sigma_m(prediction) + kDistance_m * rotation_sigma_rad);
@@ -71,7 +71,7 @@ std::optional<FoundPlace> Relocalisation::likely_one(const std::vector<FoundPlac
   return likeliest ? std::optional(candidates[*likeliest]) : std::nullopt;
 }
 
-/// By features, or where these are not enough, by depth alone.
+/// Matches by features or, if these are insufficient, by depth alone.
 std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const UsableImages& usable,
                                                    const filter::GaussianState& prediction) {
   std::vector<FoundPlace> candidates;

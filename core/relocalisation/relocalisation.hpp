@@ -1,8 +1,8 @@
-// Where a lost camera is, by the frames that were fused before. The paper leaves this open.
+// Relocalisation of a lost camera by keyframes. The paper leaves this open.
 //
-// Candidates are found by features or, where there are too few, by depth (keyframes.hpp).
-// The one whose posterior odds suffice (place_odds.hpp) updates the filter (relocalisation_update.hpp), and
-// tracking goes on with patches of its keyframe.
+// Candidates are found by features or, with too few features, by depth (keyframes.hpp). The candidate with
+// sufficient posterior odds (place_odds.hpp) updates the filter (relocalisation_update.hpp), and tracking
+// continues with patches of the matched keyframe.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@
 
 namespace fusebench::relocalisation {
 
-/// What tracking goes on from.
+/// State and reference for tracking after a relocalisation.
 struct RelocalisedReference {
   filter::GaussianState prior;             ///< after the relocalisation update
-  alignment::TrackingReference reference;  ///< from the keyframe
-  bool by_depth = false;                   ///< no features were needed
+  alignment::TrackingReference reference;  ///< cut from the matched keyframe
+  bool by_depth = false;                   ///< relocalised by depth, without features
 };
 
-/// What of a frame a place is looked for by.
+/// Images of a frame that can be used for relocalisation.
 struct UsableImages {
   bool grey = true;   ///< not dark
-  bool depth = true;  ///< not that of an earlier frame
+  bool depth = true;  ///< not a repeated image
 };
 
 class Relocalisation {
@@ -40,23 +40,22 @@ class Relocalisation {
   /// The references must outlive it.
   Relocalisation(const config::Config& config, const SensorRig& rig);
 
-  /// Offers a tracked and fused frame (motion compensated, depth gated) as one to be found again by.
+  /// Offers a tracked and fused frame (compensated, gated) as a keyframe.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,
                     double blur_px);
 
-  /// All poses were corrected: those of the keyframes become these, by their stamps.
+  /// Sets the corrected poses of the keyframes, by their stamps.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
     keyframes_.move(T_world_camera_at);
     odds_.clear();
   }
 
-  /// Takes over the keyframes of a model that was joined to this one.
+  /// Takes over the keyframes of a segment that was joined to this map.
   void adopt(const Relocalisation& joined, const SE3& T_world_joined) {
     keyframes_.adopt(joined.keyframes_, T_world_joined);
   }
 
-  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, or if the odds of
-  /// the likeliest place are too small.
+  /// Relocalises the frame by the keyframes; nothing if no match is certain or if the odds are too small.
   [[nodiscard]] std::optional<RelocalisedReference> find(const RgbdFrame& frame, const UsableImages& usable,
                                                          const filter::GaussianState& prediction,
                                                          const tsdf::TsdfVolume& model,

@@ -11,8 +11,7 @@ namespace fusebench::relocalisation {
 
 namespace {
 
-/// Standard deviations of all that follows from the motion, times a factor; biases and the clock stay as they
-/// are.
+/// Scales the standard deviations of the states that depend on the motion; biases and clock are unchanged.
 filter::StateMatrix motion_inflated(const filter::StateMatrix& covariance, double factor) {
   filter::StateVector scale = filter::StateVector::Ones();
   for (const auto& [offset, size] : {std::pair{filter::kRotation, 9}, std::pair{filter::kGravity, 2},
@@ -21,14 +20,14 @@ filter::StateMatrix motion_inflated(const filter::StateMatrix& covariance, doubl
   return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
-/// Three components get a prior of their own, uncorrelated with the rest.
+/// Sets an independent prior for three components.
 void reset_covariance(filter::StateMatrix& covariance, int offset, double sigma) {
   covariance.middleRows<3>(offset).setZero();
   covariance.middleCols<3>(offset).setZero();
   covariance.block<3, 3>(offset, offset).diagonal().setConstant(sigma * sigma);
 }
 
-/// The prediction with its covariance inflated by the innovation.
+/// Inflates the covariance of the prediction by the innovation.
 filter::GaussianState inflated(const filter::GaussianState& prediction, double innovation,
                                const UnknownMotion& unknown) {
   filter::GaussianState state{prediction.mean,
@@ -43,7 +42,7 @@ filter::GaussianState inflated(const filter::GaussianState& prediction, double i
   return state;
 }
 
-/// The keyframe becomes the reference pose; its error is not correlated with the rest of the state.
+/// Makes the keyframe the reference pose; its error is not correlated with the rest of the state.
 filter::GaussianState with_reference_pose(const filter::GaussianState& state, const RelocalisedPose& place) {
   const Matrix6d carried =
       filter::pose_transport(place.T_world_imu_reference, state.mean.T_world_imu_reference);
@@ -59,7 +58,7 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
   result.mean.model_rate_offset = carried * state.mean.model_rate_offset;
   result.mean.model_readout = filter::transported(carried, state.mean.model_readout);
   result.mean.T_world_imu_reference = place.T_world_imu_reference;
-  // How the camera moved at the keyframe is not kept, and that of another frame would be wrong.
+  // The motion at the keyframe is not stored, and that of another frame would be wrong.
   result.mean.reference_rate.setZero();
   result.mean.reference_offset.setZero();
   result.mean.reference_rate_offset.setZero();
@@ -84,7 +83,7 @@ filter::GaussianState relocalisation_update(const filter::GaussianState& predict
                                             const RelocalisedPose& place, const UnknownMotion& unknown) {
   const filter::GaussianState prior =
       with_reference_pose(inflated(prediction, normalised_innovation(prediction, place), unknown), place);
-  // The match tells the pose against that frame, wherever the frame is.
+  // The match measures the pose relative to the keyframe, whatever the pose of the keyframe.
   Eigen::Matrix<double, filter::kPoseSize, filter::kStateSize> matched =
       Eigen::Matrix<double, filter::kPoseSize, filter::kStateSize>::Zero();
   matched.leftCols<filter::kPoseSize>().setIdentity();

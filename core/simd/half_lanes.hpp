@@ -1,4 +1,4 @@
-// Numbers of 16 bits in memory (IEEE 754 binary16: eleven significant bits), eight at a time.
+// Eight 16-bit numbers in memory (IEEE 754 binary16: eleven significant bits).
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ static_assert(sizeof(Half) == 2);
 #define FUSEBENCH_HAS_HALF_INSTRUCTIONS
 #endif
 
-/// Eight values in a row.
+/// Loads eight consecutive values.
 [[nodiscard]] inline Float8 load(const Half* values) {
 #ifdef FUSEBENCH_HAS_HALF_INSTRUCTIONS
   __m128i row;
@@ -54,7 +54,7 @@ struct Pairs {
       _mm256_i32gather_epi32(reinterpret_cast<const int*>(values), std::bit_cast<__m256i>(at), sizeof(Half));
   const __m256i first = _mm256_and_si256(words, _mm256_set1_epi32(0xFFFF));
   const __m256i second = _mm256_srli_epi32(words, 16);
-  // Packing keeps the halves of the registers apart: the middle quarters change places.
+  // Packing works within register halves, so the middle quarters are swapped.
   const __m256i packed = _mm256_permute4x64_epi64(_mm256_packus_epi32(first, second), 0b11'01'10'00);
   return {std::bit_cast<Float8>(_mm256_cvtph_ps(_mm256_castsi256_si128(packed))),
           std::bit_cast<Float8>(_mm256_cvtph_ps(_mm256_extracti128_si256(packed, 1)))};
@@ -68,7 +68,7 @@ struct Pairs {
 #endif
 }
 
-/// values[at] by lane; values[at + 1] must be there to be read as well.
+/// values[at] by lane; values[at + 1] must be readable.
 [[nodiscard]] inline Float8 gather(const Half* values, Int8 at) { return gather_pairs(values, at).first; }
 
 #undef FUSEBENCH_HAS_HALF_INSTRUCTIONS

@@ -1,4 +1,4 @@
-// Grey levels at eight places of an image at once.
+// Grey levels at eight image positions.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace fusebench::simd {
 
-/// As IntensitySample.
+/// IntensitySample for eight lanes.
 struct IntensityLanes {
   Float8 value{};
   Float8 dx{};
@@ -27,14 +27,14 @@ namespace lane_details {
   return multiply_add(t, linear(t, b, c), all_lanes(a));
 }
 
-/// Weights of the four pixels around a place between the second and the third.
+/// Weights of four pixels for a position between the second and the third.
 [[nodiscard]] inline std::array<Float8, 4> cubic_weights(Float8 t) {
   const Float8 squared = t * t;
   return {t * quadratic(t, -0.5F, 1.0F, -0.5F),
           multiply_add(squared, linear(t, -2.5F, 1.5F), all_lanes(1.0F)), t * quadratic(t, 0.5F, 2.0F, -1.5F),
           squared * linear(t, -0.5F, 0.5F)};
 }
-/// Their derivatives.
+/// Derivatives of the weights.
 [[nodiscard]] inline std::array<Float8, 4> cubic_slopes(Float8 t) {
   return {quadratic(t, -0.5F, 2.0F, -1.5F), t * linear(t, -5.0F, 4.5F), quadratic(t, 0.5F, 4.0F, -4.5F),
           t * linear(t, -1.0F, 1.5F)};
@@ -46,7 +46,7 @@ namespace lane_details {
   return multiply_add(weights[3], values[3], multiply_add(weights[2], values[2], first));
 }
 
-/// The four pixels of a row of the image from each place on.
+/// Four consecutive pixels of a row from each position on.
 [[nodiscard]] inline std::array<Float8, 4> four_pixels(const GreyImage& image, Int8 at) {
   const Int8 words = gather_bytes(image.data.data(), image.data.size(), at);
   return {byte_of(words, 0), byte_of(words, 1), byte_of(words, 2), byte_of(words, 3)};
@@ -54,9 +54,9 @@ namespace lane_details {
 
 }  // namespace lane_details
 
-/// Cubic convolution (Keys 1981, a = -1/2) with the exact derivative of the interpolant. A bilinear sample is
-/// blurred depending on its sub-pixel position, which biases an alignment towards whole pixels; this one
-/// hardly is. Needs 1 <= x <= width - 2 (same for y) in all lanes.
+/// Cubic convolution (Keys 1981, a = -1/2) with the exact derivative of the interpolant. The blur of a
+/// bilinear sample depends on its sub-pixel position, which biases an alignment towards whole pixels; cubic
+/// convolution has little of this bias. Requires 1 <= x <= width - 2 (same for y) in all lanes.
 [[nodiscard]] inline IntensityLanes sample_bicubic(const GreyImage& image, Float8 x, Float8 y) {
   using namespace lane_details;
   const Int8 left = min(to_int(x), all_lanes(image.width - 3));
@@ -79,7 +79,7 @@ namespace lane_details {
   return sample;
 }
 
-/// The value of it alone.
+/// Value of sample_bicubic() without the derivative.
 [[nodiscard]] inline Float8 sample_bicubic_value(const GreyImage& image, Float8 x, Float8 y) {
   using namespace lane_details;
   const Int8 left = min(to_int(x), all_lanes(image.width - 3));
@@ -94,7 +94,7 @@ namespace lane_details {
   return value;
 }
 
-/// Value of the other sample_bilinear. Needs 0 <= x <= width - 1 (same for y) in all lanes.
+/// Value of the scalar sample_bilinear(). Requires 0 <= x <= width - 1 (same for y) in all lanes.
 [[nodiscard]] inline Float8 sample_bilinear_value(const GreyImage& image, Float8 x, Float8 y) {
   using lane_details::byte_of;
   const Int8 left = min(to_int(x), all_lanes(image.width - 2));

@@ -1,4 +1,4 @@
-// Eight points at once, and the little geometry that kernels need.
+// Geometry of eight points for the kernels.
 #pragma once
 
 #include <Eigen/Core>

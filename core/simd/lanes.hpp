@@ -1,6 +1,6 @@
-// Eight numbers at once: vector types of the compiler with the usual operators, lane by lane. Each lane
-// computes what a single number would, bit for bit, so that a build without these instructions gives the same
-// results. The few things that have no operator are instructions where there are any, and loops elsewhere.
+// Vectors of eight numbers: vector types of the compiler with operators by lane. Each lane gives the same
+// bits as scalar code, so builds without these instructions give the same results. Functions without an
+// operator use instructions if available, otherwise loops.
 #pragma once
 
 #ifdef __AVX2__
@@ -50,13 +50,13 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return Int8{value, value, value, value, value, value, value, value};
 }
 
-/// As std::min and std::max: if one is not a number the result is `a`.
+/// As std::min and std::max; the result is `a` if an argument is NaN.
 [[nodiscard]] inline Float8 min(Float8 a, Float8 b) { return b < a ? b : a; }
 [[nodiscard]] inline Float8 max(Float8 a, Float8 b) { return a < b ? b : a; }
 [[nodiscard]] inline Int8 min(Int8 a, Int8 b) { return b < a ? b : a; }
 [[nodiscard]] inline Int8 max(Int8 a, Int8 b) { return a < b ? b : a; }
-/// As std::clamp, but what is not a number becomes `low` (the order of operands sees to that), so that an
-/// index made of the result is always one of the image.
+/// As std::clamp, but NaN becomes `low` (by the order of operands), so an index computed from the result is
+/// always valid.
 [[nodiscard]] inline Float8 clamp(Float8 values, float low, float high) {
   return min(max(all_lanes(low), values), all_lanes(high));
 }
@@ -64,8 +64,7 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return std::bit_cast<Float8>(std::bit_cast<Int8>(values) & 0x7FFFFFFF);
 }
 
-/// a * b + c, rounded once, which is faster as well; always explicit, since compilers may not contract on
-/// their own (-ffp-contract=off).
+/// a * b + c with one rounding. Always explicit, since compilers may not contract (-ffp-contract=off).
 [[nodiscard]] inline Float8 multiply_add(Float8 a, Float8 b, Float8 c) {
 #if defined(__AVX2__) && defined(__FMA__)
   return std::bit_cast<Float8>(
@@ -80,17 +79,17 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return multiply_add(all_lanes(a), b, c);
 }
 
-/// Cuts the fraction off.
+/// Truncates towards zero.
 [[nodiscard]] inline Int8 to_int(Float8 values) { return __builtin_convertvector(values, Int8); }
 [[nodiscard]] inline Float8 to_float(Int8 values) { return __builtin_convertvector(values, Float8); }
 
-/// As std::floor, for numbers that an int can hold.
+/// As std::floor, for values in the range of int.
 [[nodiscard]] inline Int8 floor_to_int(Float8 values) {
   const Int8 cut = to_int(values);
   return cut + (to_float(cut) > values);  // true is -1
 }
 
-/// As std::sqrt, for numbers from 0 on.
+/// As std::sqrt, for values >= 0.
 [[nodiscard]] inline Float8 sqrt(Float8 values) {
 #ifdef __AVX2__
   return std::bit_cast<Float8>(_mm256_sqrt_ps(std::bit_cast<__m256>(values)));
@@ -122,10 +121,11 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
 #endif
 }
 
-/// The four bytes from bytes[at] on, by lane, the first one the lowest; bytes beyond the last of the `count`
-/// >= 4 are unspecified.
+/// The four bytes from bytes[at] on, by lane, first byte lowest. Bytes at or beyond `count` (>= 4) are
+/// unspecified.
 [[nodiscard]] inline Int8 gather_bytes(const std::uint8_t* bytes, std::size_t count, Int8 at) {
-  // Words of four bytes: the last one ends with the bytes, and what it begins too early is shifted out.
+  // Reads words of four bytes. The last word ends with the array; bytes before the requested position are
+  // shifted out.
   const auto last = static_cast<std::int32_t>(count) - 4;
   const Int8 begin = at < last ? at : all_lanes(last);
 #ifdef __AVX2__
@@ -143,13 +143,13 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return words >> (8 * (at - begin));
 }
 
-/// Eight values in a row, wherever they begin.
+/// Loads eight consecutive values (no alignment required).
 [[nodiscard]] inline Float8 load(const float* values) {
   Float8 result;
   std::memcpy(&result, values, sizeof(result));
   return result;
 }
-/// The sum of all lanes, in their order.
+/// The sum of all lanes in a fixed order.
 [[nodiscard]] inline double sum_of_lanes(Float8 values) {
   double sum = 0;
   for (std::size_t lane = 0; lane < kLanes; ++lane) sum += static_cast<double>(values[lane]);

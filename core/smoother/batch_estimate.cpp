@@ -92,7 +92,7 @@ Result<std::vector<prediction::PreintegratedImu>> integrate(const BatchInput& in
   return increments;
 }
 
-/// The trace of the rows' share in J (J^T J)^-1 J^T: how many unknowns they determine.
+/// Trace of J_rows (J^T J)^-1 J_rows^T: the number of unknowns that these rows determine.
 double leverage(const SparseRowsd& jacobian, Eigen::Index begin, Eigen::Index end,
                 const SelectedInverse& inverse) {
   using Row = SparseRowsd::InnerIterator;
@@ -108,8 +108,8 @@ double leverage(const SparseRowsd& jacobian, Eigen::Index begin, Eigen::Index en
   return sum;
 }
 
-/// J^T J. The last frame's pose and biases appear in no common residual, but their covariance is requested:
-/// zeros make place for it.
+/// J^T J. The last frame's pose and biases share no residual, but their covariance is required: explicit
+/// zeros reserve the entries.
 SparseMatrixd information_of(const BatchLinearisation& at) {
   SparseMatrixd information = at.jacobian.transpose() * at.jacobian;
   SparseMatrixd place(information.rows(), information.cols());
@@ -172,7 +172,7 @@ Result<void> BatchSearch::round() {
   return {};
 }
 
-/// The next scale, by the residuals of this round.
+/// Updates the scale from the residuals of this round.
 void BatchSearch::rescale(BatchProblem& problem, const BatchLinearisation& at,
                           const SelectedInverse& inverse) {
   const std::size_t visual_rows = 6 * input_.visual.size();
@@ -203,7 +203,7 @@ void BatchSearch::rescale(BatchProblem& problem, const BatchLinearisation& at,
   scale_.correlation = correlation_factor(residual_of_frame);
 }
 
-/// The same for what the frames say of the timing. What few of them know is left as it is.
+/// Updates the scale of the timing residuals. A scale with too few residuals is unchanged.
 void BatchSearch::rescale_timing(const BatchLinearisation& at, const SelectedInverse& inverse) {
   constexpr double kLeastRedundancy = 10;
   const std::size_t begin = 6 * input_.visual.size() + 9 * increments_.size();
@@ -242,7 +242,7 @@ void BatchSearch::describe_frames(const BatchLinearisation& at, const SelectedIn
     frame.state.gravity_direction_world = x.gravity_direction_world;
     frame.state.imu_time_offset_s = x.time_offset_s;
     if (k > 0) frame.state.angular_velocity_imu_radps = increments_[k - 1].angular_velocity_end_radps;
-    // Pose, velocity and biases of a frame are neighbours among the columns; the first frame has no pose.
+    // Pose, velocity and biases of a frame are adjacent columns; the first frame has no pose.
     const bool fixed = at.columns.rotation[k] < 0;
     const int begin = fixed ? at.columns.velocity[k] : at.columns.rotation[k];
     const int size = fixed ? kBatchStateSize - filter::kPoseSize : kBatchStateSize;
@@ -283,7 +283,7 @@ void BatchSearch::describe_common(const BatchLinearisation& at, const SelectedIn
 
 Result<BatchEstimate> BatchSearch::run() {
   constexpr double kSteadyOffsetS = 1e-6;
-  constexpr double kSteadyBias = 1e-4;  // rad/s and m/s^2: second order in the increments
+  constexpr double kSteadyBias = 1e-4;  // rad/s and m/s^2: changes are of second order in the increments
   constexpr double kSteadyScale = 0.02;
   while (estimate_.rounds < options_.max_rounds && !estimate_.converged) {
     const BatchUnknowns before = unknowns_;

@@ -17,8 +17,8 @@ namespace fusebench::smoother {
 
 namespace {
 
-/// The root of the inverse of an increment's covariance. Floors far below any sensor's noise keep it regular
-/// where an interval holds one or two samples only.
+/// Square root of the inverse covariance of an increment. A floor far below the noise of any sensor keeps it
+/// regular for intervals with one or two samples.
 prediction::Matrix9d whitening_of(const prediction::Matrix9d& covariance) {
   constexpr double kRotationFloorRad = 1e-5;
   constexpr double kVelocityFloorMps = 1e-4;
@@ -145,7 +145,7 @@ void BatchProblem::add_priors() {
       Vector3d::Constant(options_.accelerometer_bias_sigma_mps2);
   rest_.push_back(problem_.AddResidualBlock(vector_prior<6>(Vector6d::Zero(), bias_sigma), nullptr,
                                             x.bias.front().data()));
-  // Upper bound on camera speed; it only matters where there is no visual measurement.
+  // Weak prior on the camera speed; it only matters without visual measurements.
   rest_.push_back(problem_.AddResidualBlock(vector_prior<3>(Vector3d::Zero(), Vector3d::Constant(10.0)),
                                             nullptr, x.velocity_world_mps.front().data()));
   if (options_.rotation_prior_rad > 0) {
@@ -189,9 +189,9 @@ bool BatchProblem::solve() {
   ceres::Solver::Options options;
   options.num_threads = 1;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // CHOLMOD, not Eigen's factorisation: what Ceres has of the latter was built for other alignments than ours
-  // (see selected_inverse.hpp). Debian's reference BLAS has one kernel for all processors; with another BLAS
-  // the last bits may differ.
+  // CHOLMOD instead of Eigen's factorisation: Ceres was built with another alignment of Eigen types (see
+  // selected_inverse.hpp). Debian's reference BLAS has one kernel for all processors; with another BLAS the
+  // last bits may differ.
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   options.max_num_iterations = 100;
   options.function_tolerance = 1e-9;

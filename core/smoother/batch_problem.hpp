@@ -1,4 +1,4 @@
-// The unknowns of the batch estimator and the least-squares problem around them, for Ceres.
+// Unknowns and least-squares problem of the batch estimator, for Ceres.
 #pragma once
 
 #include <ceres/problem.h>
@@ -24,7 +24,7 @@ struct BatchUnknowns {
   Vector3d timing_s = Vector3d::Zero();
 };
 
-/// Where the parts of an unknown begin among the columns of the Jacobian; -1 for what is held fixed.
+/// First columns of the unknowns in the Jacobian; -1 for fixed unknowns.
 struct BatchColumns {
   std::vector<int> rotation;
   std::vector<int> position;
@@ -40,17 +40,16 @@ struct BatchColumns {
   int count = 0;
 };
 
-/// Residuals and Jacobian where the search ended, robust weights applied. Rows: six for each visual motion in
-/// the order of the input, nine for each interval of the IMU, three for each timing of the input, then the
-/// rest.
+/// Residuals and Jacobian at the end of the search, with robust weights. Rows: six for each visual motion in
+/// the order of the input, nine for each IMU interval, three for each timing of the input, then the priors.
 struct BatchLinearisation {
   std::vector<double> residuals;
   SparseRowsd jacobian;
   BatchColumns columns;
 };
 
-/// Of measurements by the images: what their information is divided by, and the scale of Huber's loss in
-/// these units.
+/// Weighting of image measurements: divisor of their information, and the scale of the Huber loss in these
+/// units.
 struct Weighting {
   double scale = 1;
   double outlier_sigmas = 5;
@@ -58,18 +57,18 @@ struct Weighting {
 
 class BatchProblem {
  public:
-  /// All arguments must outlive the problem, which moves the unknowns. increments: one an interval.
+  /// All arguments must outlive the problem, which modifies the unknowns. increments: one for each interval.
   BatchProblem(const BatchInput& input, const BatchOptions& options,
                const std::vector<prediction::PreintegratedImu>& increments, const Weighting& visual,
                const Weighting& timing, BatchUnknowns& unknowns);
 
-  /// False if Ceres gave up.
+  /// False if Ceres failed.
   [[nodiscard]] bool solve();
   [[nodiscard]] BatchLinearisation linearise();
-  /// The residuals of a visual motion without robust weights.
+  /// Residuals of a visual motion without robust weights.
   [[nodiscard]] Vector6d visual_residual(std::size_t motion) const;
 
-  /// What a search changes, and where the increments are integrated.
+  /// IMU errors of the unknowns, at which the increments are integrated.
   [[nodiscard]] static prediction::InertialErrors errors_at(const BatchUnknowns& unknowns, std::size_t frame);
 
  private:

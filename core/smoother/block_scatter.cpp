@@ -8,7 +8,7 @@ namespace fusebench::smoother {
 namespace {
 constexpr std::size_t kMostBlocks = 8;
 constexpr std::size_t kFewestBlocks = 4;
-constexpr std::size_t kFewestFrames = 15;  // of a block
+constexpr std::size_t kFewestFrames = 15;  // least number of frames in a block
 }  // namespace
 
 RowBlocks blocks_in_time(const BatchInput& input) {
@@ -29,7 +29,7 @@ RowBlocks blocks_in_time(const BatchInput& input) {
 BatchCommonMatrix enlarged_by_scatter(const BatchCommonMatrix& covariance, const BatchLinearisation& at,
                                       const Eigen::MatrixXd& to_common, const RowBlocks& blocks) {
   if (blocks.count == 0) return covariance;
-  // What each block moves the unknowns by.
+  // Scores: change of the unknowns by each block.
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(at.columns.count, blocks.count);
   for (std::size_t row = 0; row < blocks.of_row.size(); ++row) {
     for (SparseRowsd::InnerIterator entry(at.jacobian, static_cast<Eigen::Index>(row)); entry; ++entry)

@@ -1,5 +1,5 @@
-// Tangent spaces for Ceres, with the perturbations of core/filter/filter_state.hpp: rotations move on the
-// right, R * Exp(d), and unit directions by s2_plus. Quaternions are stored as Eigen does: x, y, z, w.
+// Manifolds for Ceres with the perturbations of core/filter/filter_state.hpp: rotations R * Exp(d), unit
+// directions by s2_plus. Quaternions are stored as in Eigen: x, y, z, w.
 #pragma once
 
 #include <ceres/manifold.h>

@@ -9,7 +9,7 @@ namespace fusebench::smoother {
 
 namespace {
 
-/// The information's inverse, without the directions of which nothing is known.
+/// Inverse of the information without unobservable directions.
 Matrix6d inverse_of_known(const Eigen::SelfAdjointEigenSolver<Matrix6d>& eigen, double least) {
   Matrix6d inverse = Matrix6d::Zero();
   for (int i = 0; i < 6; ++i) {

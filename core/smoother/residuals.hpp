@@ -1,7 +1,7 @@
-// The residuals of the batch estimator, for Ceres' automatic derivatives. Parameter blocks: rotations as
-// quaternions x, y, z, w; positions, velocities (world); biases as gyroscope, then accelerometer; the
-// direction of gravity; the extrinsic of the camera; the offset of the IMU's clock; scale errors of gyroscope
-// and accelerometer; errors of the image sensors' timing, one block each.
+// Residuals of the batch estimator, for Ceres' automatic derivatives.
+// Parameter blocks: rotations as quaternions x, y, z, w; positions and velocities (world); biases (gyroscope,
+// accelerometer); gravity direction; camera extrinsic; IMU clock offset; scale errors of gyroscope and
+// accelerometer; timing errors of the image sensors, one block each.
 #pragma once
 
 #include <ceres/rotation.h>
@@ -40,12 +40,12 @@ Eigen::Map<const Vector3<T>> as_vector(const T* x) {
   return Eigen::Map<const Vector3<T>>(x);
 }
 
-/// Increments that were integrated with some biases, scales and some offset of the clock, and their first
-/// order dependence on all of these.
+/// Residual of pre-integrated increments, linearised in biases, scales and clock offset at their values of
+/// the integration.
 struct InertialResidual {
   prediction::PreintegratedImu imu;
-  prediction::InertialErrors errors;  ///< that it was integrated with
-  double time_offset_s;               ///< the same
+  prediction::InertialErrors errors;  ///< used in the integration
+  double time_offset_s;               ///< used in the integration
   prediction::Matrix9d whitening;     ///< of (rotation, velocity, position)
 
   template <class T>
@@ -90,8 +90,8 @@ struct InertialResidual {
 
 /// Random walk of the biases.
 struct BiasWalkResidual {
-  double gyroscope_sigma;      ///< of the step
-  double accelerometer_sigma;  ///< the same
+  double gyroscope_sigma;      ///< of one step
+  double accelerometer_sigma;  ///< of one step
 
   template <class T>
   bool operator()(const T* bias_i, const T* bias_j, T* residual) const {
@@ -103,7 +103,7 @@ struct BiasWalkResidual {
   }
 };
 
-/// Relative camera motion measured by the images, which depends on the timing that they were read with.
+/// Relative camera motion measured by the images, and its dependence on their timing.
 struct VisualResidual {
   RelativeCameraMotion motion;
   Matrix6d whitening;
@@ -132,7 +132,7 @@ struct VisualResidual {
   }
 };
 
-/// What the images of a frame say of the timing among themselves.
+/// Information of the images of a frame on the timing.
 struct TimingResidual {
   VisualTiming measured;
   double per_sigma;  ///< factor on the residual
@@ -159,7 +159,7 @@ struct RotationPrior {
   }
 };
 
-/// Gaussian prior on a vector, component by component.
+/// Gaussian prior on a vector, with independent components.
 template <int Size>
 struct VectorPrior {
   Eigen::Matrix<double, Size, 1> expected;

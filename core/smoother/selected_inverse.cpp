@@ -18,13 +18,13 @@ SelectedInverse::SelectedInverse(std::shared_ptr<const Factor> factor) : factor_
   const SparseMatrixd below = factor_->matrixL().nestedExpression();
   SparseMatrixd unit(below.rows(), below.cols());
   unit.setIdentity();
-  inverse_ = below + unit;  // the pattern; the values are the factor's until their column is filled
+  inverse_ = below + unit;  // pattern of the factor; a column has the factor's values until it is computed
   inverse_.makeCompressed();
   for (Eigen::Index column = inverse_.cols() - 1; column >= 0; --column) fill_column(column);
 }
 
-/// Z = D^-1 L^-1 + (I - L^T) Z, from the last column to the first: each entry of a column needs only entries
-/// of later columns that are in the pattern as well.
+/// Z = D^-1 L^-1 + (I - L^T) Z, from the last column to the first: an entry of a column needs only entries of
+/// later columns within the pattern.
 void SelectedInverse::fill_column(Eigen::Index column) {
   const SparseIndex* outer = inverse_.outerIndexPtr();
   const SparseIndex* inner = inverse_.innerIndexPtr();
@@ -35,7 +35,7 @@ void SelectedInverse::fill_column(Eigen::Index column) {
   std::vector<double> sum(factor.size(), 0.0);
   for (SparseIndex k = begin; k < end; ++k) {
     SparseIndex at =
-        outer[inner[k]];  // runs down column inner[k], whose rows contain those of this column below
+        outer[inner[k]];  // advances in column inner[k], whose rows include those of this column below
     const auto of_k = static_cast<std::size_t>(k - begin);
     for (SparseIndex i = k; i < end; ++i) {
       while (inner[at] < inner[i]) ++at;

@@ -1,11 +1,11 @@
-// Points or directions of the pixels of an image.
+// Image of points or directions.
 #pragma once
 
 #include "core/base/types.hpp"
 
 namespace fusebench::systems {
 
-/// Coordinates by axis, as lanes read them.
+/// One image for each coordinate, for access by lanes.
 struct PointMap {
   Image<float> x;
   Image<float> y;

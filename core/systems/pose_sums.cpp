@@ -19,7 +19,7 @@ void PoseSumLanes::add(const std::array<simd::Float8, 6>& direction, simd::Float
   const simd::Float8 second = valid ? second_weight : none;
   std::size_t entry = 0;
   for (std::size_t row = 0; row < direction.size(); ++row) {
-    // A pixel without a match may be anything, also not a number.
+    // Values of a pixel without a match are arbitrary, possibly NaN.
     const simd::Float8 along = valid ? direction[row] : none;
     descent_[row] = simd::multiply_add(first, along, descent_[row]);
     const simd::Float8 weighted = second * along;

@@ -1,5 +1,5 @@
-// A system: frames in, a pose and a status a frame out, and a surface at the end. What runs, evaluates and
-// compares systems knows no more of them than this.
+// Interface of a system: receives frames, returns a pose and a status for each, and a surface at the end.
+// Running, evaluating and comparing systems uses this interface only.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,7 @@
 
 namespace fusebench::systems {
 
-/// What a system has reconstructed: a TSDF, of which a mesh is made; a mesh or, without triangles, a cloud of
-/// points (world); or nothing.
+/// Reconstruction of a system in the world: a TSDF, a mesh (a point cloud if it has no triangles), or none.
 using Surface = std::variant<std::monostate, tsdf::TsdfVolume, Mesh>;
 
 /// One run of a system over one recording.
@@ -29,18 +28,17 @@ class System {
   /// Processes the next frame (time increases). A lost frame is an outcome; errors end the run.
   [[nodiscard]] virtual Result<health::FrameOutcome> process(const RgbdFrame& frame) = 0;
 
-  /// What a filter says of the last frame beyond its outcome; nothing of a system that has none.
+  /// Report of a filter on the last frame; null for systems without one.
   [[nodiscard]] virtual const health::FrameReport* filter_report() const { return nullptr; }
 
-  /// The poses as the system revises them after the last frame, of the frames that have one, and its surface
-  /// at these poses; nothing if the poses of process() are not changed. Errors end the run.
+  /// After the last frame: revised poses of the frames that have one; the surface is then at these poses.
+  /// Nothing if the poses of process() are final. Errors end the run.
   [[nodiscard]] virtual Result<std::optional<Trajectory>> revise() { return std::nullopt; }
 
-  /// The places that the system knows, and the loops that it found; nothing of one that does not look for
-  /// any. Until take_surface().
+  /// Places and loops of the system; null if it does not detect loops. Valid until take_surface().
   [[nodiscard]] virtual const loops::LoopClosure* loops() const { return nullptr; }
 
-  /// The surface, and the end of everything else that the system keeps.
+  /// Moves the surface out and ends the use of the system.
   [[nodiscard]] virtual Surface take_surface() = 0;
 };
 

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kRowsPerChunk = 32;  // a multiple of any stride
 constexpr int kPixels = static_cast<int>(simd::kLanes);
 
-/// The one to take of `stride` in a row (a power of two, 4 at most), another one for the next number: first
-/// those that are far apart (van der Corput 1935).
+/// Phase of the selected pixels, 0 to stride - 1 (stride: a power of two, at most 4). It changes with
+/// `number`, distant phases first (van der Corput 1935).
 int taken_of(int stride, std::uint32_t number) {
   constexpr std::array<int, 4> kBitReversed = {0, 2, 1, 3};
   return kBitReversed[number % kBitReversed.size()] * stride / 4;
@@ -27,13 +27,13 @@ int taken_of(int stride, std::uint32_t number) {
 
 /// Traversal of eight ray segments along one axis of the lattice, in units of blocks.
 struct AxisSegments {
-  simd::Int8 begin;      ///< block in which the segment begins
-  simd::Int8 crossings;  ///< faces that it crosses, negative if downwards
-  simd::Float8 next;     ///< fraction of the segment at which it crosses the first of them
+  simd::Int8 begin;      ///< block at the start of the segment
+  simd::Int8 crossings;  ///< number of crossed faces, negative if downwards
+  simd::Float8 next;     ///< fraction of the segment at the first crossing
   simd::Float8 delta;    ///< fraction between two crossings
 };
 
-/// From origin + near * ray to origin + far * ray.
+/// Segment from origin + near * ray to origin + far * ray.
 AxisSegments segments_along(float origin, simd::Float8 ray, simd::Float8 near, simd::Float8 far) {
   const simd::Float8 never = simd::all_lanes(std::numeric_limits<float>::infinity());
   const simd::Float8 from = simd::multiply_add(near, ray, simd::all_lanes(origin));
@@ -47,15 +47,14 @@ AxisSegments segments_along(float origin, simd::Float8 ray, simd::Float8 near, s
   return {begin, crossings, crossings == 0 ? never : rest * between, crossings == 0 ? never : between};
 }
 
-/// The block traversal of eight segments. Segments run through the same blocks if they begin in the same one
-/// and cross the same faces in the same order: mostly those of neighbouring pixels.
+/// Block traversal of eight segments. Segments pass the same blocks if they begin in the same block and cross
+/// the same faces in the same order. Most neighbouring pixels do.
 struct Paths {
   std::array<simd::Int8, 3> begin;
   std::array<simd::Int8, 3> crossings;
-  simd::Int8 order;  ///< of the crossings; -1 if an axis is crossed more than twice, or nothing was measured
+  simd::Int8 order;  ///< of the crossings; -1 if an axis is crossed more than twice or without a measurement
 
-  /// Bit i is set if pixel i passes other blocks than the pixel before it; `last` is the one before the
-  /// first.
+  /// Bit i is set if pixel i passes other blocks than the previous pixel; `last`: paths before the first.
   [[nodiscard]] unsigned changes(const Paths& last) const {
     simd::Int8 same = (order != -1) & (order == shifted(last.order, order));
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -64,13 +63,13 @@ struct Paths {
     }
     return ~simd::lane_bits(same) & 0xFF;
   }
-  /// The last lane of one, followed by all but the last of the other.
+  /// The last lane of `last`, followed by all but the last lane of `now`.
   static simd::Int8 shifted(simd::Int8 last, simd::Int8 now) {
     return __builtin_shuffle(last, now, simd::Int8{7, 8, 9, 10, 11, 12, 13, 14});
   }
 };
 
-/// One bit for each comparison of a crossing of one axis with one of another.
+/// One bit for each comparison of crossings of two axes.
 simd::Int8 order_of(const std::array<AxisSegments, 3>& axes) {
   const simd::Float8 never = simd::all_lanes(std::numeric_limits<float>::infinity());
   simd::Int8 often{};
@@ -94,7 +93,7 @@ simd::Int8 order_of(const std::array<AxisSegments, 3>& axes) {
   return order | often;  // true is -1
 }
 
-/// The rays of a camera's pixels, cut to the band around their measurements.
+/// The rays of the pixels of a camera, cut to the band around their measurements.
 class PixelSegments {
  public:
   PixelSegments(const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
@@ -112,13 +111,13 @@ class PixelSegments {
         truncation_sigmas_(static_cast<float>(tsdf.truncation_sigmas)),
         depth_sigma_(depth) {}
 
-  /// Adds the blocks of every stride-th pixel of a row, from the `first` one on.
+  /// Adds the blocks of every stride-th pixel of a row, from `first` on.
   void add_row(const float* row_m, int width, int y, int first, int stride, OrderedBlocks& blocks) {
     last_.order = simd::all_lanes(-1);
     const simd::Float8 ray_y = simd::all_lanes((static_cast<float>(y) - cy_) * per_fy_);
     const simd::Float8 columns = static_cast<float>(stride) * simd::kLaneNumber;
     for (int x = first; x < width; x += stride * kPixels) {
-      // Pixels beyond the end of the row were not measured.
+      // Pixels beyond the end of the row have no measurement.
       const simd::Int8 offset = stride * simd::to_int(simd::kLaneNumber);
       const simd::Int8 inside = offset < width - x;
       const simd::Float8 depth_m =
@@ -150,8 +149,8 @@ class PixelSegments {
     last_ = paths;
   }
 
-  // Adds the blocks on the segment of a pixel: the traversal of Amanatides & Woo 1987. The number of steps is
-  // known beforehand, so rounding can at worst pick a neighbour at a corner; the loop always ends.
+  // Adds the blocks of a segment by the traversal of Amanatides & Woo 1987. The number of steps is computed
+  // first, so the loop always ends; rounding can at worst select a neighbour at a corner.
   void add_blocks(const std::array<AxisSegments, 3>& axes, std::size_t lane, OrderedBlocks& blocks) const {
     const std::array<int, 3> crossings = {axes[0].crossings[lane], axes[1].crossings[lane],
                                           axes[2].crossings[lane]};
@@ -168,8 +167,8 @@ class PixelSegments {
     }
   }
 
-  // Lattice coordinates from here on are relative to the camera's block, so that they stay small.
-  Eigen::Matrix3f rays_;  // columns: the ray by u, by v (on the plane z = 1) and along the optical axis
+  // Lattice coordinates below are relative to the camera's block, to keep them small.
+  Eigen::Matrix3f rays_;  // columns: derivative of the ray by u and v (plane z = 1), and the optical axis
   BlockIndex camera_block_;
   Eigen::Vector3f origin_;
   float per_fx_, per_fy_, cx_, cy_;  // pixels
@@ -177,7 +176,7 @@ class PixelSegments {
   float truncation_m_;
   float truncation_sigmas_;
   preprocessing::DepthSigma depth_sigma_;
-  Paths last_{};  // of the pixels before
+  Paths last_{};  // of the previous pixels
 };
 
 }  // namespace
@@ -194,7 +193,7 @@ void OrderedBlocks::clear() {
 }
 
 void OrderedBlocks::clear_recent() {
-  recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max()));  // nothing reaches that far
+  recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max()));  // outside the lattice
 }
 
 void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera,

@@ -1,4 +1,4 @@
-// Which blocks of the lattice a depth image touches.
+// Blocks of the lattice that a depth image touches.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 
 namespace fusebench::tsdf {
 
-/// Half width of the band (metres) around a measurement: tsdf.truncation_m, two voxels, or
-/// tsdf.truncation_sigmas of the depth noise, whichever is most.
+/// Half width of the band (metres) around a measurement: the largest of tsdf.truncation_m, two voxels, and
+/// tsdf.truncation_sigmas of the depth noise.
 [[nodiscard]] double half_band_m(double depth_m, const config::TsdfConfig& tsdf,
                                  const config::DepthConfig& depth);
 
-/// A set of blocks in the order in which they were first met.
+/// A set of blocks in the order of insertion.
 class OrderedBlocks {
  public:
   OrderedBlocks() { clear_recent(); }
 
   void clear();
   void add(const BlockIndex& index) {
-    // Most rays run through the blocks of the rays before.
+    // Most rays pass the same blocks as the previous rays.
     BlockIndex& recent =
         recent_[static_cast<std::size_t>((index.x() & 3) | (index.y() & 3) << 2 | (index.z() & 3) << 4)];
     if (index == recent) return;
@@ -42,25 +42,24 @@ class OrderedBlocks {
   std::array<BlockIndex, 64> recent_;
 };
 
-/// The blocks of one depth image after the other; keeps its memory.
+/// The blocks of a depth image; reuses its memory.
 class BandBlocks {
  public:
-  /// Finds every block that a ray of a measured pixel passes from half a band in front of the measurement to
-  /// as far behind it (both along z). Depth outside [min_m, max_m] of `depth` is skipped. Where a block is at
-  /// least kFinePixels wide in the image as far away as max_m, every fourth pixel of every fourth row stands
-  /// for its neighbours, every second one where it is half as wide: of a surface they may miss corners, half
-  /// a block wide. Which pixels these are changes from row to row and with the number of the frame, so that a
-  /// thin structure is not missed systematically. Single precision from the camera on: a ray that misses a
-  /// corner of a block by less than a micrometre may count as a hit. Ends soon after more than
-  /// tsdf.max_blocks are found, which is more than the model can take.
+  /// Finds all blocks that the rays of measured pixels pass within half a band of the measurement, in front
+  /// and behind (along z). Skips depth outside [min_m, max_m] of `depth`. If a block at max_m is at least
+  /// kFinePixels wide in the image, only every fourth pixel of every fourth row is used, at half that width
+  /// every second one. This may miss corners of a surface, half a block wide. The selected pixels change with
+  /// row and frame number, so thin structures are not missed systematically. Single precision relative to the
+  /// camera: a ray may count as a hit if it misses a corner by less than a micrometre. Stops soon after the
+  /// number of blocks exceeds tsdf.max_blocks.
   void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
             const config::TsdfConfig& tsdf, const config::DepthConfig& depth, std::uint32_t frame_number,
             const Workers& workers);
 
   static constexpr double kFinePixels = 8;
 
-  /// Those found, once each, in the order of the pixels (row-major), then from front to back. The same for
-  /// every number of threads.
+  /// The blocks found, without duplicates, in the order of the pixels (row-major), then from front to back.
+  /// Does not depend on the number of threads.
   [[nodiscard]] const std::vector<BlockIndex>& blocks() const { return found_.blocks(); }
 
  private:

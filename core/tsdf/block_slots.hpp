@@ -1,4 +1,4 @@
-// Many lookups of blocks, close to each other.
+// Cached lookup of neighbouring blocks.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace fusebench::tsdf {
 
-/// Slots of the blocks of a volume. Caches the regions that were looked up last, so use one instance for each
-/// part of space and thread; the volume must not change meanwhile.
+/// Slots of the blocks of a volume. Caches the last regions, so use one instance for each thread and part of
+/// space. The volume must not change during its use.
 class BlockSlots {
  public:
   explicit BlockSlots(const TsdfVolume& volume) : volume_(volume) {}
@@ -19,8 +19,7 @@ class BlockSlots {
   /// The slot of a block, or -1.
   [[nodiscard]] int find(const BlockIndex& index) {
     const Eigen::Vector3i region = region_of(index);
-    // Neighbouring regions differ in the parity of a coordinate, so those around a point never evict each
-    // other.
+    // Neighbouring regions differ in the parity of a coordinate, so they use different cache entries.
     Remembered& entry = remembered_[static_cast<std::size_t>((region.x() & 1) | (region.y() & 1) << 1 |
                                                              (region.z() & 1) << 2)];
     if (entry.region != region) {
@@ -33,7 +32,7 @@ class BlockSlots {
  private:
   struct Remembered {
     Eigen::Vector3i region =
-        Eigen::Vector3i::Constant(std::numeric_limits<int>::max());  // none: nothing reaches that far
+        Eigen::Vector3i::Constant(std::numeric_limits<int>::max());  // none: outside the lattice
     const std::int32_t* slots = nullptr;
   };
 

@@ -1,4 +1,4 @@
-// From the lattice coordinates of a block to its slot in storage: an open-addressing hash table.
+// Open-addressing hash table from the lattice coordinates of a block to its storage slot.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@ namespace fusebench::tsdf {
 
 using BlockIndex = Eigen::Vector3i;  ///< lattice coordinates of a block: floor(voxel / 8)
 
-/// Slots are numbered 0, 1, ... in the order of insertion. Lookups may run at once; insertions may not.
+/// Slots are numbered 0, 1, ... in the order of insertion. Concurrent lookups are allowed; concurrent
+/// insertions are not.
 class BlockTable {
  public:
   BlockTable() : entries_(kInitialCapacity) {}
@@ -22,7 +23,7 @@ class BlockTable {
   /// Slot of a block, or -1.
   [[nodiscard]] int find(const BlockIndex& index) const { return entries_[probe(index)].slot; }
 
-  /// Adds a block with the next slot; false if it was there before.
+  /// Adds a block with the next slot; false if it exists already.
   bool insert(const BlockIndex& index);
   /// Removes all blocks and keeps the memory.
   void clear();
@@ -38,7 +39,7 @@ class BlockTable {
   };
 
   [[nodiscard]] std::size_t probe(const BlockIndex& index) const {
-    // Teschner et al. 2003 mix the axes with large primes; the multiplication spreads the result over the
+    // Teschner et al. 2003 combine the axes with large primes; the multiplication spreads the result over the
     // high bits.
     const auto mixed = static_cast<std::uint32_t>(index.x()) * 73856093U ^
                        static_cast<std::uint32_t>(index.y()) * 19349663U ^
@@ -53,7 +54,7 @@ class BlockTable {
   }
   void grow();
 
-  std::vector<Entry> entries_;  // a power of two, at most half full
+  std::vector<Entry> entries_;  // size: a power of two; at most half full
   std::size_t size_ = 0;
 };
 

@@ -1,6 +1,6 @@
-// Interpolation between the voxels of a field at eight places at once. Coordinates are in voxels; a cube is
-// anything with pair_m(x, y, z): eight distances (metres) at a voxel counted from the cube's first, and at
-// the one after it along x; NaN where a voxel was not observed.
+// Trilinear interpolation of a field at eight positions. Coordinates are in voxels. A cube provides pair_m(x,
+// y, z): eight distances (metres) at a voxel relative to the cube's first, and at the next one along x; NaN
+// if unobserved.
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@ namespace fusebench::tsdf {
   return simd::all_lanes(std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Eight integer places of a lattice.
+/// Eight integer lattice positions.
 struct LatticePoints {
   simd::Int8 x;
   simd::Int8 y;
   simd::Int8 z;
 };
 
-/// The cells that points lie in, and the weights of their eight corners; bit 0 of a corner's number: x, bit
-/// 1: y, bit 2: z.
+/// The cells of eight points and the weights of their eight corners; bits of a corner's number: 0: x, 1: y,
+/// 2: z.
 struct TrilinearCell {
   explicit TrilinearCell(const simd::Points& at)
       : base{simd::floor_to_int(at.x), simd::floor_to_int(at.y), simd::floor_to_int(at.z)} {
@@ -40,7 +40,8 @@ struct TrilinearCell {
   std::array<simd::Float8, 8> weights;
 };
 
-/// The distance; `cube` begins at the cell's base. NaN where one of the eight corners was not observed.
+/// Interpolated distance; `cube` begins at the base of the cell. NaN if one of the eight corners is
+/// unobserved.
 template <class Cube>
 [[nodiscard]] simd::Float8 interpolated_m(const TrilinearCell& cell, const Cube& cube) {
   simd::Float8 sum_m{};
@@ -53,8 +54,7 @@ template <class Cube>
   return sum_m;
 }
 
-/// Change of the distance from one voxel to the next at the middle of three; the outer ones may be
-/// unobserved.
+/// Change of the distance per voxel at the middle of three voxels; the outer ones may be unobserved.
 [[nodiscard]] inline simd::Float8 slope(simd::Float8 before_m, simd::Float8 centre_m, simd::Float8 after_m) {
   const simd::Int8 has_before = before_m == before_m;
   const simd::Int8 has_after = after_m == after_m;
@@ -62,9 +62,9 @@ template <class Cube>
   return has_before & has_after ? 0.5F * difference_m : difference_m;
 }
 
-/// Distances of the eight corners of a cell and of the voxels next to them along the axes.
+/// Distances at the eight corners of a cell and at their neighbours along the axes.
 struct CellNeighbourhood {
-  /// cube: begins one voxel before the cell's base on each axis and has four a side.
+  /// cube: begins one voxel before the base of the cell on each axis and has a side of four.
   template <class Cube>
   explicit CellNeighbourhood(const Cube& cube) {
     const auto copy_pair = [&](int x, int y, int z) {
@@ -88,17 +88,17 @@ struct CellNeighbourhood {
     return static_cast<std::size_t>(x + 4 * y + 16 * z);
   }
 
-  std::array<simd::Float8, 64> distances_m;  // those that are in the corners of the cube are not set
+  std::array<simd::Float8, 64> distances_m;  // the corners of the cube are not set
 };
 
-/// The gradient (metres per voxel): that at the eight corners by central differences, one-sided next to
-/// unobserved voxels, interpolated; `cube` begins one voxel before the cell's base on each axis and has four
-/// a side. NaN where one of the eight corners was not observed.
+/// Gradient (metres per voxel): trilinear interpolation of the gradients at the eight corners (central
+/// differences, one-sided next to unobserved voxels). `cube` begins one voxel before the base of the cell on
+/// each axis and has a side of four. NaN if one of the eight corners is unobserved.
 template <class Cube>
 [[nodiscard]] simd::Points interpolated_gradient(const TrilinearCell& cell, const Cube& cube) {
   const CellNeighbourhood around(cube);
-  // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners, of which
-  // an unobserved one makes the sum NaN.
+  // Four voxels along the axis: the outer two may be unobserved; an unobserved inner one (a corner) makes the
+  // sum NaN.
   const auto along = [&](std::size_t axis) {
     const std::size_t bit = std::size_t{1} << axis;
     const std::size_t step = std::size_t{1} << (2 * axis);

@@ -9,9 +9,9 @@ namespace fusebench::tsdf {
 
 static_assert(kBlockSide == simd::kLanes, "a row of a block is one vector");
 
-/// Voxels of the brick around eight places.
+/// Voxels of the brick around eight positions.
 struct TsdfBrick::Cube {
-  /// From `first` on, `side` voxels along each axis.
+  /// `side` voxels along each axis, from `first` on.
   Cube(const TsdfBrick& brick, const LatticePoints& first, int side)
       : distances_m(brick.distances_m_.data()), row(brick.size_.x()), slice(row * brick.size_.y()) {
     const simd::Int8 x = first.x;
@@ -27,7 +27,7 @@ struct TsdfBrick::Cube {
   }
 
   const simd::Half* distances_m;
-  int row, slice;  // voxels from one row, and from one slice, to the next
+  int row, slice;  // strides of rows and slices in voxels
   simd::Int8 inside;
   simd::Int8 at;
 };
@@ -41,14 +41,14 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
   origin_voxel_ = origin;
   size_ = size;
   const auto voxels = static_cast<std::size_t>(size.prod());
-  // A gather at the first voxel, in place of one outside, reads a cube of four voxels, in pairs.
+  // Padding: lanes outside the brick gather from the first voxel a cube of four voxels, in pairs.
   const std::size_t readable = voxels + static_cast<std::size_t>(4 * size.x() * (size.y() + 1));
   if (distances_m_.size() < readable) distances_m_.resize(readable);
   BlockIndex block;
   for (block.z() = first_block.z(); block.z() <= last_block.z(); ++block.z()) {
     for (block.y() = first_block.y(); block.y() <= last_block.y(); ++block.y()) {
       for (block.x() = first_block.x(); block.x() <= last_block.x(); ++block.x()) {
-        // Of an unallocated block, slot -1 is read: nothing observed.
+        // Slot -1, for an unallocated block, is readable and unobserved.
         const std::ptrdiff_t slot = volume.find_block(block);
         copy_block(volume.distances_m() + slot * kBlockVoxels, block * kBlockSide);
       }
@@ -56,7 +56,7 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
   }
 }
 
-/// The rows of a block that lie in the box.
+/// Copies the rows of a block inside the box.
 void TsdfBrick::copy_block(const simd::Half* block_m, const VoxelIndex& block_voxel) {
   const Eigen::Vector3i from = block_voxel - origin_voxel_;
   const int begin_y = std::max(0, -from.y());

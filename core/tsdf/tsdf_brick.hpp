@@ -1,5 +1,4 @@
-// The field of a small box, copied side by side: where many points lie close together, no block has to be
-// looked for at each.
+// Contiguous copy of the field in a small box, which avoids block lookups for many close points.
 #pragma once
 
 #include <vector>
@@ -9,17 +8,16 @@
 
 namespace fusebench::tsdf {
 
-/// Distances of a box of voxels. Its memory serves one box after the other.
+/// Distances of a box of voxels. Reuses its memory.
 class TsdfBrick {
  public:
-  /// Copies the voxels from `first` to `last` on each axis; the box is widened along x to whole blocks.
+  /// Copies the voxels from `first` to `last` on each axis; the box is extended along x to whole blocks.
   void copy(const TsdfVolume& volume, const VoxelIndex& first, const VoxelIndex& last);
 
-  /// The voxel that coordinates count from.
+  /// Origin of the voxel coordinates.
   [[nodiscard]] const VoxelIndex& origin_voxel() const { return origin_voxel_; }
 
-  /// As TsdfLanes::sample() and gradient(), the same to the bit for the same coordinates; NaN also where the
-  /// box does not reach.
+  /// As TsdfLanes::sample() and gradient(), bit-identical for equal coordinates; NaN also outside the box.
   [[nodiscard]] simd::Float8 sample(const simd::Points& at) const;
   [[nodiscard]] simd::Points gradient(const simd::Points& at) const;
 

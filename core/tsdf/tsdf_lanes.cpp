@@ -10,20 +10,19 @@ namespace fusebench::tsdf {
 namespace {
 
 constexpr int kRegionVoxels = kRegionSide * kBlockSide;
-/// A window of more regions than this (16 MB) takes longer to make than it saves.
+/// Building a larger window of regions (16 MB) takes more time than it saves.
 constexpr double kMaxWindowRegions = 1 << 22;
 
 }  // namespace
 
-/// A cube of kSide voxels from `first` on, at most eight a side, and so in at most two blocks along each
-/// axis.
+/// A cube of kSide (at most eight) voxels from `first` on, which covers at most two blocks along each axis.
 template <int kSide>
 class TsdfLanes::Cube {
  public:
   Cube(const TsdfLanes& field, const LatticePoints& first)
       : field_(field), axes_{Axis(field, first.x, 0), Axis(field, first.y, 1), Axis(field, first.z, 2)} {
     for (std::size_t n = 0; n < 8; ++n) {
-      // A second block that no lane reaches is not looked for.
+      // A second block is looked up only if some lane reaches it.
       const auto reached = [&](std::size_t axis) { return (n >> axis & 1) == 0 || axes_[axis].crossed; };
       if (!reached(0) || !reached(1) || !reached(2)) continue;
       slots_[n] = field.slots(axes_[0].block[n & 1], axes_[1].block[n >> 1 & 1], axes_[2].block[n >> 2]);
@@ -43,9 +42,9 @@ class TsdfLanes::Cube {
 
  private:
   struct Place {
-    simd::Int8 offset;  ///< share of this axis in the offset in the block
-    simd::Int8 second;  ///< in the second block
-    bool begins_block;  ///< in any lane: the place before it is in another
+    simd::Int8 offset;  ///< share of this axis in the offset within the block
+    simd::Int8 second;  ///< true if in the second block
+    bool begins_block;  ///< in any lane: the previous voxel is in another block
   };
   struct Axis {
     Axis(const TsdfLanes& field, simd::Int8 first, int axis) {
@@ -60,8 +59,8 @@ class TsdfLanes::Cube {
                                                crossed && simd::any((at & 7) == 0)};
       }
     }
-    std::array<BlockAxis, 2> block;  ///< the second one only if it is
-    bool crossed;                    ///< into, in any lane
+    std::array<BlockAxis, 2> block;  ///< the second one is set only if it is crossed into
+    bool crossed;                    ///< true if any lane reaches the second block
     std::array<Place, static_cast<std::size_t>(kSide)> places;
   };
 
@@ -80,7 +79,7 @@ class TsdfLanes::Cube {
 
   const TsdfLanes& field_;
   std::array<Axis, 3> axes_;
-  std::array<simd::Int8, 8> slots_;  // bit 0 of the number: in the second block along x, bit 1: y, bit 2: z
+  std::array<simd::Int8, 8> slots_;  // number: bit 0: second block along x, bit 1: y, bit 2: z
 };
 
 TsdfLanes::TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, double reach_m)
@@ -128,7 +127,7 @@ std::optional<TsdfLanes> field_in_view(const TsdfVolume& volume, const PinholeCa
   const double corner = std::max(camera.back_project(0, 0, 1.0).norm(),
                                  camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
   const double reach_m = depth.max_m * corner;
-  // Also false without a finite pose.
+  // False for a pose that is not finite too.
   if (volume.block_count() == 0 ||
       !(T_world_camera.translation.cwiseAbs().maxCoeff() + reach_m < volume.reach_m()) ||
       !T_world_camera.rotation.coeffs().allFinite()) {

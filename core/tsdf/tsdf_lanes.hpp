@@ -1,4 +1,4 @@
-// The field at eight points at once.
+// The field at eight points.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace fusebench::tsdf {
 
-/// Reads the field of a volume around a place. Coordinates are in voxels from origin_voxel(), which keeps
-/// them small, so that single precision is enough: 1e-4 voxels at a thousand voxels from the origin. The
-/// volume must have blocks, outlive it, and not change meanwhile.
+/// Reads the field of a volume around a position. Coordinates are in voxels from origin_voxel(), which keeps
+/// them small: the error of single precision is 1e-4 voxels at a thousand voxels from the origin. The volume
+/// must have blocks, outlive the object, and not change.
 class TsdfLanes {
  public:
   /// Blocks further than reach_m from the centre may be reported as absent.
@@ -23,33 +23,33 @@ class TsdfLanes {
   /// World coordinates in voxels of the origin.
   [[nodiscard]] const Vector3d& origin_voxel() const { return origin_voxel_; }
 
-  /// Where voxels are stored.
+  /// Storage locations of eight voxels.
   struct Location {
     simd::Int8 slot{};       ///< of the block, -1 = not allocated
     simd::Int8 offset{};     ///< in the block
     simd::Int8 no_region{};  ///< no block of its region (4x4x4 blocks) is allocated
   };
   [[nodiscard]] Location locate(const LatticePoints& voxel) const;
-  /// Distances at voxels (metres); NaN where they were not observed.
+  /// Distances at voxels (metres); NaN if unobserved.
   [[nodiscard]] simd::Float8 distances_m(const Location& at) const { return distances_m(at.slot, at.offset); }
 
-  /// Trilinear interpolation of the distance (metres); NaN where one of the eight neighbours was not
-  /// observed.
+  /// Trilinear interpolation of the distance (metres); NaN if one of the eight neighbours is unobserved.
   [[nodiscard]] simd::Float8 sample(const simd::Points& at) const;
 
-  /// Gradient of the field in metres per voxel: trilinear interpolation of that at the eight neighbours, by
-  /// central differences, one-sided next to unobserved voxels. NaN where one of the eight was not observed.
+  /// Gradient of the field in metres per voxel: trilinear interpolation of the gradients at the eight
+  /// neighbours (central differences, one-sided next to unobserved voxels). NaN if one of the eight is
+  /// unobserved.
   [[nodiscard]] simd::Points gradient(const simd::Points& at) const;
 
  private:
   template <int kSide>
   class Cube;
 
-  /// What the coordinates of blocks along one axis add to the place where their slots are kept.
+  /// Share of a block coordinate along one axis in the indices of its slot.
   struct BlockAxis {
-    simd::Int8 region;     ///< coordinate of it
-    simd::Int8 window;     ///< share in its place in the window
-    simd::Int8 in_region;  ///< share in the block's place in the region
+    simd::Int8 region;     ///< region coordinate
+    simd::Int8 window;     ///< share in the index within the window
+    simd::Int8 in_region;  ///< share in the index within the region
   };
   [[nodiscard]] BlockAxis block_axis(simd::Int8 block, int axis) const;
   [[nodiscard]] simd::Int8 regions(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
@@ -58,25 +58,25 @@ class TsdfLanes {
   [[nodiscard]] simd::Int8 slots_in(simd::Int8 region, const BlockAxis& x, const BlockAxis& y,
                                     const BlockAxis& z) const;
   [[nodiscard]] simd::Float8 distances_m(simd::Int8 slot, simd::Int8 offset) const;
-  /// At an offset in a block, and at the next one.
+  /// Distances at an offset in a block and at the next one.
   [[nodiscard]] simd::Pairs pairs_m(simd::Int8 slot, simd::Int8 offset) const;
 
   const TsdfVolume& volume_;
   Eigen::Vector3i origin_region_;
   Vector3d origin_voxel_;
-  int reach_;  // regions on either side of the origin's
-  // Number of each region there, -1 = none; empty if there were too many. The outermost ones count as none,
-  // so that what lies beyond can be looked for there.
+  int reach_;  // regions on each side of the origin
+  // Number of each region in the window, -1 = none; empty if the window would be too large. Border regions
+  // count as none, so lookups beyond the window use the table.
   std::vector<std::int32_t> window_;
-  std::array<std::int32_t, 3> window_step_;  // from one region to the next along each axis
+  std::array<std::int32_t, 3> window_step_;  // stride of regions along each axis
 };
 
-/// The field in view of a camera; nothing if there is no block, or the pose is no place in the lattice.
+/// The field in view of a camera; nothing if there is no block or the pose is outside the lattice.
 [[nodiscard]] std::optional<TsdfLanes> field_in_view(const TsdfVolume& volume, const PinholeCamera& camera,
                                                      const SE3& T_world_camera,
                                                      const config::DepthConfig& depth);
 
-// Inline: called in every step of a ray.
+// Inline, since it runs in every step of a ray.
 
 inline TsdfLanes::BlockAxis TsdfLanes::block_axis(simd::Int8 block, int axis) const {
   const simd::Int8 region = block >> 2;
@@ -95,7 +95,7 @@ inline simd::Int8 TsdfLanes::slots(const BlockAxis& x, const BlockAxis& y, const
   return slots_in(regions(x, y, z), x, y, z);
 }
 
-/// region: its number.
+/// region: number of the region.
 inline simd::Int8 TsdfLanes::slots_in(simd::Int8 region, const BlockAxis& x, const BlockAxis& y,
                                       const BlockAxis& z) const {
   return simd::gather(volume_.region_slots(), (region << 6) + x.in_region + y.in_region + z.in_region);

@@ -33,8 +33,7 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
         "the depth image has the camera's size");
   check(frame.color.empty() || frame.color.data.size() == frame.depth_m.data.size(),
         "the colour image has the depth image's size");
-  // The furthest point of a band lies within this many metres of the camera, on each axis (written to fail
-  // for NaN).
+  // The bands are within this distance of the camera on each axis (written to fail for NaN).
   const double range_m = depth.max_m + truncation_m(depth.max_m, depth);
   const double ray_m = range_m * (camera.back_project(0, 0, 1.0).norm() +
                                   camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
@@ -62,7 +61,7 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
   return {};
 }
 
-// Slots of the touched blocks; those that are missing get new ones, all of them or none.
+// Slots of the touched blocks. Allocates the missing ones, all or none.
 Result<void> TsdfVolume::allocate() {
   const std::vector<BlockIndex>& touched = touched_.blocks();
   touched_slots_.resize(touched.size());

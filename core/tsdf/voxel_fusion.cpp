@@ -17,16 +17,15 @@ using simd::lane_details::byte_of;
 
 static_assert(kBlockSide == simd::kLanes, "a row of a block is one vector");
 
-// Smaller weights are treated as zero: below this, a half-precision number has fewer than eleven significant
-// bits.
+// Smaller weights count as zero: below this, half precision has fewer than eleven significant bits.
 constexpr float kMinWeight = 0x1p-14F;
 constexpr float kMaxColorCount = 255.0F;  // of a byte
 constexpr int kCountByte = 3;
 
-// More, added to 255, would round to 256.
+// A larger value, added to 255, would round to 256.
 constexpr float kMaxRounding = 1.0F - 0x1p-16F;
 
-/// A number from 0 to kMaxRounding for each frame, evenly spread over any few frames in a row: multiples of
+/// A number from 0 to kMaxRounding for each frame, evenly distributed over consecutive frames: multiples of
 /// the golden ratio (Weyl 1916).
 float spread(std::uint32_t frame_number) {
   return std::min(static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24),
@@ -56,8 +55,8 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       max_color_count_(std::min(max_weight_, kMaxColorCount)),
       color_rounding_(spread(frame_number)) {}
 
-// A slice at a time, and each step for all of its rows before the next one: which rows are needed is known by
-// then, so that the branch is not mispredicted.
+// Processes a slice at a time, each step for all of its rows. The rows that need the next step are known
+// before it, which avoids branch mispredictions.
 void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const {
   const Vector3d corner_world = index.cast<double>() * (kBlockSide * voxel_m_);
   const Eigen::Vector3f corner_camera = (T_camera_world_ * corner_world).cast<float>();
@@ -97,35 +96,35 @@ simd::Float8 VoxelUpdate::band_m(simd::Float8 sigma_m) const {
 VoxelUpdate::SeenRow VoxelUpdate::look(simd::Float8 x_m, simd::Float8 y_m, simd::Float8 z_m) const {
   const DepthImage& depth_m = frame_.depth_m;
   const simd::Float8 inverse_z = 1.0F / z_m;
-  // Half a pixel more, so that cutting the fraction off rounds to the nearest pixel.
+  // Adds half a pixel, so that truncation rounds to the nearest pixel.
   const simd::Float8 u = simd::multiply_add(fx_ * x_m, inverse_z, simd::all_lanes(cx_ + 0.5F));
   const simd::Float8 v = simd::multiply_add(fy_ * y_m, inverse_z, simd::all_lanes(cy_ + 0.5F));
   const simd::Int8 inside = (z_m > 0.0F) & (u >= 0.0F) & (v >= 0.0F) &
                             (u < static_cast<float>(depth_m.width)) &
                             (v < static_cast<float>(depth_m.height));
-  // Lanes outside take pixel 0, which is there to read but not used.
+  // Lanes outside the image read pixel 0 and ignore it.
   const simd::Float8 zero{};
   const simd::Int8 pixel = simd::to_int(inside ? v : zero) * depth_m.width + simd::to_int(inside ? u : zero);
   const simd::Float8 measured_m = simd::gather(depth_m.data.data(), pixel);
   const simd::Float8 distance_m = measured_m - z_m;
-  // Further behind the surface than the band, a voxel is hidden.
+  // Voxels farther behind the surface than the band are occluded.
   const simd::Int8 seen = inside & (measured_m >= nearest_m_) & (measured_m <= farthest_m_) &
                           (distance_m > -band_m(depth_sigma_.at_m(measured_m)));
   return {pixel, measured_m, distance_m, seen};
 }
 
-// Returns which voxels are close enough to the surface to have its colour.
+// Returns the voxels that are close enough to the surface to take its colour.
 simd::Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& block, std::size_t row) const {
   const simd::Float8 sigma_m = depth_sigma_.at_m(seen.measured_m);
   const simd::Float8 band = band_m(sigma_m);
-  // Far behind the surface the projective distance is unreliable, and wrong where a ray clips an edge and
-  // comes out again.
+  // Far behind the surface the projective distance is unreliable. It is wrong where a ray passes an edge and
+  // leaves the surface again.
   const simd::Float8 half_m = 0.5F * band;
   const simd::Float8 weight =
       simd::min(half_m, band + seen.distance_m) * voxel_variance_ /
       (half_m * simd::multiply_add(sigma_m, sigma_m, simd::all_lanes(voxel_variance_)));
   const simd::Int8 observed = seen.seen & (weight >= kMinWeight);
-  // The running mean; what was never observed has no distance yet.
+  // Running mean; an unobserved voxel has no previous distance.
   const simd::Float8 before_m = simd::load(block.distance_m + row);
   const simd::Float8 before = simd::load(block.weight + row);
   const simd::Float8 total = before + weight;
@@ -137,8 +136,8 @@ simd::Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& blo
   return observed & (simd::abs(seen.distance_m) < half_m);
 }
 
-// The running means of the three channels. A mean moves by less than a level, so that always rounding to the
-// nearest would stop it; stochastic rounding by the fraction keeps it moving.
+// Running means of the three channels. A mean changes by less than a level, so rounding to nearest would stop
+// it; stochastic rounding keeps it moving.
 void VoxelUpdate::add_color(simd::Int8 pixel, simd::Int8 colored, const BlockVoxels& block,
                             std::size_t row) const {
   static_assert(sizeof(Rgb) == 3);

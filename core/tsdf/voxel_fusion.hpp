@@ -8,11 +8,11 @@
 
 namespace fusebench::tsdf {
 
-/// What TsdfVolume::integrate does to the voxels of one block after the other. Single precision: an error of
-/// 1e-7 of the depth is far below the depth noise. The frame must outlive it.
+/// Applies the update of TsdfVolume::integrate to blocks. Single precision: its error of 1e-7 of the depth is
+/// far below the depth noise. The frame must outlive the object.
 class VoxelUpdate {
  public:
-  /// frame_number: number of frames fused so far; decides how colours are rounded.
+  /// frame_number: number of frames fused so far; determines the rounding of colours.
   VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
               const config::DepthConfig& depth, const config::TsdfConfig& tsdf, std::uint32_t frame_number);
 
@@ -21,10 +21,10 @@ class VoxelUpdate {
  private:
   /// Measurements of the frame for a row of eight voxels.
   struct SeenRow {
-    simd::Int8 pixel;         ///< that they are seen in; 0 outside of the image
-    simd::Float8 measured_m;  ///< there
-    simd::Float8 distance_m;  ///< from the voxel to what was measured, along the optical axis
-    simd::Int8 seen;          ///< something was, and the voxel is not hidden behind it
+    simd::Int8 pixel;         ///< index; 0 outside the image
+    simd::Float8 measured_m;  ///< depth at the pixel
+    simd::Float8 distance_m;  ///< measured_m minus the depth of the voxel
+    simd::Int8 seen;          ///< has a measurement and is not occluded by it
   };
   [[nodiscard]] SeenRow look(simd::Float8 x_m, simd::Float8 y_m, simd::Float8 z_m) const;
   [[nodiscard]] simd::Float8 band_m(simd::Float8 sigma_m) const;
@@ -34,8 +34,7 @@ class VoxelUpdate {
   const RgbdFrame& frame_;
   SE3 T_camera_world_;
   double voxel_m_;
-  Eigen::Matrix3f step_camera_;  // columns: one voxel along each axis of the
-                                 // world, in the camera frame
+  Eigen::Matrix3f step_camera_;  // columns: step of one voxel along each world axis, in the camera frame
   float fx_, fy_, cx_, cy_;      // pixels
   float nearest_m_, farthest_m_;
   preprocessing::DepthSigma depth_sigma_;
@@ -44,7 +43,7 @@ class VoxelUpdate {
   float voxel_variance_;  // m^2
   float max_weight_;
   float max_color_count_;
-  float color_rounding_;  // added before the fraction is cut off
+  float color_rounding_;  // added before truncation
 };
 
 }  // namespace fusebench::tsdf

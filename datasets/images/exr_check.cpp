@@ -15,7 +15,7 @@ namespace fusebench::images {
 
 namespace {
 
-constexpr std::size_t kMostName = 255;  // of the format, without the zero behind it
+constexpr std::size_t kMostName = 255;  // limit of the format, without the NUL
 
 std::optional<std::uint32_t> little_endian(std::istream& stream) {
   std::array<char, 4> bytes{};
@@ -26,7 +26,7 @@ std::optional<std::uint32_t> little_endian(std::istream& stream) {
   return value;
 }
 
-/// A text with a zero behind it.
+/// Reads a NUL-terminated string.
 std::optional<std::string> name_of(std::istream& stream) {
   std::string name;
   for (char c = 0; stream.get(c);) {
@@ -39,19 +39,19 @@ std::optional<std::string> name_of(std::istream& stream) {
 
 }  // namespace
 
-// The decoder makes room for an attribute of any size, and fills it with zeros, before it reads it.
+// The decoder allocates and zeroes memory for an attribute of any size before it reads it.
 std::string exr_damage(const std::filesystem::path& file) {
   constexpr std::uint32_t kMagic = 20000630;
   constexpr std::uint32_t kHasParts = 0x1000;
-  constexpr std::uint64_t kFrame = 8;  // the magic number and the version
+  constexpr std::uint64_t kFrame = 8;  // magic number and version
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   std::ifstream stream = io::input_file(file);
   if (error || little_endian(stream) != kMagic) return {};
   const std::uint32_t version = little_endian(stream).value_or(0);
 
-  // An attribute: its name, its type, the size of its value, the value. An empty name ends a header, and an
-  // empty header those of several parts.
+  // An attribute consists of name, type, size and value. An empty name ends a header, and an empty header
+  // ends the headers of a multi-part file.
   std::uint64_t at = kFrame;
   bool first_of_header = true;
   while (true) {

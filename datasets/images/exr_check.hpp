@@ -1,4 +1,4 @@
-// What OpenEXR files claim in their headers, before a decoder makes room for it.
+// Checks the headers of OpenEXR files before a decoder allocates memory for them.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace fusebench::images {
 
-/// What is wrong with the headers of an OpenEXR file ("damaged OpenEXR ..."), by the sizes of their
-/// attributes; empty if nothing is, or if the file is no OpenEXR (or cannot be read: whoever opens it next
-/// will say so).
+/// Describes damage in the headers of an OpenEXR file ("damaged OpenEXR ..."), by the sizes of its
+/// attributes. Empty if there is none, if the file is not OpenEXR, or if it cannot be read (the decoder
+/// reports that).
 [[nodiscard]] std::string exr_damage(const std::filesystem::path& file);
 
 }  // namespace fusebench::images

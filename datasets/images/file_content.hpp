@@ -1,4 +1,4 @@
-// The bytes of a file in memory, and a check that they have not changed since the recording was opened.
+// Content of a file in memory, and a check that the file has not changed since the recording was opened.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace fusebench::images {
 
-/// A buffer of uninitialised bytes, unlike a vector.
+/// A buffer of uninitialised bytes, unlike std::vector.
 struct ByteBuffer {
   std::size_t size = 0;
   std::unique_ptr<std::uint8_t[]> bytes;
@@ -23,19 +23,19 @@ struct ByteBuffer {
   [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.get()), size}; }
 };
 
-/// Of an image file: more are refused before they are read, as a file can be as long as its disk, and one
-/// with holes longer.
+/// Size limit of an image file, checked before reading: a file may be as large as its disk, a sparse file
+/// larger.
 inline constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 29;
 
-/// Error data_corrupt: the file has more than kMostImageBytes. A file that is not there has none.
+/// Error data_corrupt: the file exceeds kMostImageBytes. A missing file passes.
 [[nodiscard]] Result<void> check_image_bytes(const std::filesystem::path& file);
 
-/// Empty if it cannot be read, or has more than kMostImageBytes; folders and devices have no content of a
-/// known size.
+/// Reads a file; empty if it cannot be read or exceeds kMostImageBytes. Folders and devices count as
+/// unreadable.
 [[nodiscard]] ByteBuffer content_of(const std::filesystem::path& file);
 
-/// Compares the bytes that were read now with those of the opening; no `opened`: nothing to compare with.
-/// Error data_corrupt: they differ.
+/// Compares the content with that at the opening of the recording; without `opened`, does nothing. Error
+/// data_corrupt: they differ.
 [[nodiscard]] Result<void> check_unchanged(const std::filesystem::path& file, std::string_view content,
                                            const std::optional<io::ContentHash>& opened);
 

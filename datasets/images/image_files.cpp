@@ -22,7 +22,7 @@ namespace fusebench::images {
 
 namespace {
 
-/// The library's reason in one line.
+/// Error message of the library in one line.
 std::string library_reason(std::string reason) {
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
   for (char& c : reason) c = c == '\n' ? ' ' : c;
@@ -33,29 +33,29 @@ tl::unexpected<Error> corrupt(const std::string& image, std::string_view what) {
   return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", image, what));
 }
 
-/// The error of a library that cannot be loaded, with what it is needed for.
+/// Error of a library that cannot be loaded, with the image that requires it.
 tl::unexpected<Error> no_library(const std::string& image, Error error) {
   error.message = fmt::format("{}: {}", image, error.message);
   return tl::unexpected(std::move(error));
 }
 
-/// Of one image: those of any camera are a tenth of it.
+/// Limit for one image, ten times the size of camera images.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
 
-/// Bytes of pixels that a byte of a file can stand for at most. Deflate makes 1032 of one
-/// (zlib.net/zlib_tech.html), and a PNG of one bit with a palette has a bit for three bytes; a JPEG spends at
-/// least a bit on a block of 64 samples. OpenEXR's PXR24 has dropped one of four bytes before it deflates;
-/// its PIZ counts 255 equal halves in 9 bits (ImfHuf.cpp), its other methods do less. DWAA and DWAB deflate
-/// what is already 64 times less: runs of 128 bytes in two, or 64 samples as a coefficient and a mark
-/// (ImfDwaCompressor.cpp).
+/// Upper bound of the pixel bytes that one byte of a file can encode.
+/// - Deflate: 1032 (zlib.net/zlib_tech.html); a PNG of one bit with a palette has one bit for three bytes.
+/// - JPEG: at least one bit for a block of 64 samples.
+/// - OpenEXR: PXR24 drops one of four bytes before it deflates; PIZ encodes 255 equal halves in 9 bits
+/// (ImfHuf.cpp); DWAA and DWAB deflate data that is already compressed by 64: runs of 128 bytes in two, or 64
+/// samples as a coefficient and a mark (ImfDwaCompressor.cpp). Other methods compress less.
 std::uint64_t most_per_byte(const ImageHeader& header) {
   constexpr std::uint64_t kDeflate = 1032;
   if (header.compression.starts_with("dwa")) return 64 * kDeflate;
   return header.type == SampleType::float32 ? 4 * kDeflate / 3 : 24 * kDeflate;
 }
 
-/// A header may claim any size. Memory stays in proportion to the file, or, as one of a single colour can be
-/// tiny, below the other limit.
+/// A header may claim any size. Memory is limited in proportion to the file size; images of a single colour
+/// can have tiny files, so smaller sizes are allowed up to the other limit.
 Result<void> check_claim(const std::string& image, const ImageHeader& header, std::uintmax_t bytes) {
   const auto width = static_cast<std::uint64_t>(std::max(header.width_px, 0));
   const auto height = static_cast<std::uint64_t>(std::max(header.height_px, 0));
@@ -69,8 +69,8 @@ Result<void> check_claim(const std::string& image, const ImageHeader& header, st
                                     header.width_px, header.height_px, bytes));
 }
 
-/// The library knows an image by its content, whatever its name says, and makes room for all of a GIF when it
-/// opens one, of which a header of a few bytes may claim 17 GB.
+/// The library detects the format from the content, not the name. When opening a GIF, it allocates the whole
+/// image, and a header of a few bytes may claim 17 GB.
 Result<void> check_kind(const std::filesystem::path& file) {
   std::string beginning(4, '\0');
   io::input_file(file).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
@@ -101,7 +101,7 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
                      std::filesystem::file_size(file, ignored));
 }
 
-/// The bytes must stay as long as the image.
+/// The bytes must outlive the image.
 Result<OpenedImage> open_bytes(const std::string& name, std::string_view bytes) {
   const Result<const ImageLibrary*>& library = image_library();
   if (!library) return no_library(name, library.error());
@@ -112,7 +112,7 @@ Result<OpenedImage> open_bytes(const std::string& name, std::string_view bytes) 
                      bytes.size());
 }
 
-/// Requirements of the caller on the file.
+/// Required format of the file.
 struct Layout {
   int channels = 0;
   SampleType type = SampleType::uint8;
@@ -146,7 +146,7 @@ Result<Image<Pixel>> pixels_of(const std::string& name, const OpenedImage& opene
   return image;
 }
 
-/// Pixels of an image that the library has opened.
+/// Reads the pixels of an opened image.
 template <class Pixel>
 using PixelReader = Result<Image<Pixel>> (*)(const std::string& name, const OpenedImage& opened,
                                              std::optional<ImageSize> expected);
@@ -167,7 +167,7 @@ std::uint8_t eight_bits(std::uint8_t sample) { return sample; }
 /// round(255 sample / 65535)
 std::uint8_t eight_bits(std::uint16_t sample) { return static_cast<std::uint8_t>((sample + 128U) / 257U); }
 
-/// Red, green and blue, or grey for all three; alpha is the last of two or four channels and is not read.
+/// Copies red, green and blue, or grey to all three. Alpha, the last of two or four channels, is ignored.
 template <class Sample>
 Result<ColorImage> color_from(const std::string& name, const OpenedImage& opened) {
   const std::size_t channels = opened.header.channels < 3 ? 1 : 3;
@@ -198,7 +198,7 @@ Result<ColorImage> color_pixels(const std::string& name, const OpenedImage& open
                                           : color_from<std::uint16_t>(name, opened);
 }
 
-/// A missing file is the library's to report.
+/// A missing file is reported by the library.
 Result<void> check_file_unchanged(const std::filesystem::path& file,
                                   const std::optional<io::ContentHash>& opened) {
   std::error_code ignored;
@@ -206,8 +206,8 @@ Result<void> check_file_unchanged(const std::filesystem::path& file,
   return check_unchanged(file, content_of(file).text(), opened);
 }
 
-/// Whether a decoder may see it: not if it claims another size than the expected one, or one that no image
-/// has. The library is then asked for its header only, and gives the reason.
+/// True if the size is valid and equal to the expected one. Otherwise only the header is passed to the
+/// library, which reports the reason.
 bool has_usual_size(std::string_view bytes, std::optional<ImageSize> expected) {
   const std::optional<ClaimedSize> claim = png_claim(bytes);
   if (!claim) return true;
@@ -231,8 +231,8 @@ Result<Image<Pixel>> decode_image(const Decode& decode_plain, const std::string&
   return pixels(name, *opened, std::nullopt);
 }
 
-/// Plain PNGs of recordings take the fast decoder; every other or damaged file is left to the library, which
-/// reports the reason.
+/// Plain PNGs use the fast decoder. All other and all damaged files are passed to the library, which reports
+/// the reason.
 template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
                                   PixelReader<Pixel> pixels, std::optional<ImageSize> expected,
@@ -240,7 +240,7 @@ Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesys
   if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());
   ByteBuffer content = content_of(file);
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored)) {  // else the missing library is the error
+  if (std::filesystem::exists(file, ignored)) {  // otherwise the error is the missing library
     if (const auto same = check_unchanged(file, content.text(), opened); !same)
       return tl::unexpected(same.error());
   }
@@ -267,7 +267,7 @@ Result<void> write_image(const std::filesystem::path& file, const PixelView& ima
 }  // namespace
 
 Result<ImageSize> read_image_size(const std::filesystem::path& file) {
-  // Decoding a whole plain PNG is less work than loading the library.
+  // Decoding a plain PNG is faster than loading the library.
   ByteBuffer content = content_of(file);
   if (has_usual_size(content.text(), std::nullopt)) {
     if (const auto plain = decode_plain_png_color(std::move(content)))

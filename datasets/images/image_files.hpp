@@ -1,6 +1,6 @@
-// Image files: colour (PNG, JPEG), grey with 8 and 16 bits (PNG). The only user of the image
-// library, which is loaded by the first image that it is needed for: one that is not a plain PNG of a
-// recording (plain_png.hpp: colour, 16-bit grey), or damaged.
+// Reads and writes image files: colour (PNG, JPEG), grey with 8 and 16 bits (PNG). The only user of the image
+// library, which is loaded on first use: for an image that is damaged or not a plain PNG (plain_png.hpp:
+// colour, 16-bit grey).
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,17 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Size as the header says. Errors as below.
+/// Image size from the header. Errors as below.
 [[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
 
-/// The size that a PNG claims, whatever its pixels are; nothing for other bytes, or a size that no image has.
+/// Size in the header of a PNG, whatever its pixel format; nothing for other data or invalid sizes.
 [[nodiscard]] std::optional<ImageSize> png_size(std::string_view bytes);
 
-/// Reads a colour or grey image with 8 or 16 bits a channel. Grey gives three equal channels; alpha is left
-/// out, and the colour of transparent pixels is as stored. 16 bits become 8: round(255 value / 65535).
-/// expected: the size that it must have; opened: the bytes that the file must have, those which it had when
-/// its recording was opened.
-/// Errors: data_missing (no such file); data_corrupt (changed, unreadable, truncated, other channels, bit
-/// depth or size); io (there is no image library, and this image needs it).
+/// Reads a colour or grey image with 8 or 16 bits per channel. Grey gives three equal channels; alpha is
+/// ignored, and transparent pixels keep their stored colour. 16 bits are reduced to 8: round(255 value /
+/// 65535). expected: required size. opened: required content, that at the opening of the recording. Errors:
+/// data_missing (no such file); data_corrupt (changed, unreadable, truncated, other channels, bit depth or
+/// size); io (the image requires the image library, which is missing).
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
                                             std::optional<ImageSize> expected = std::nullopt,
                                             const std::optional<io::ContentHash>& opened = std::nullopt);
@@ -53,12 +52,12 @@ struct ImageSize {
                                               std::optional<ImageSize> expected = std::nullopt,
                                               const std::optional<io::ContentHash>& opened = std::nullopt);
 
-/// Decodes an image in memory: a PNG or JPEG as read_color() takes it, or a PNG with one channel of 16 bits.
-/// name: says in messages where it is from. Errors: data_corrupt, io as read_color().
+/// Decodes an image in memory: a PNG or JPEG as for read_color(), or a PNG with one channel of 16 bits. name:
+/// source of the image for messages. Errors: data_corrupt, io as read_color().
 [[nodiscard]] Result<ColorImage> decode_color(const std::string& name, std::string_view bytes);
 [[nodiscard]] Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string_view bytes);
 
-/// A JPEG file in memory. quality: 1 to 100. Errors: io.
+/// Encodes a JPEG file in memory. quality: 1 to 100. Errors: io.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);
 
 /// A PNG file in memory. Errors: io.

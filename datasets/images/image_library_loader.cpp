@@ -14,7 +14,7 @@ constexpr const char* kHint =
     "build or install all of fusebench: this module with OpenImageIO reads images other than plain PNGs and "
     "writes JPEGs";
 
-/// The dynamic linker's, which begins with the name of the file that it is about.
+/// Error message of the dynamic linker without its leading file name.
 std::string reason_besides(const std::string& file) {
   const char* const said = dlerror();
   std::string_view reason = said != nullptr ? said : "no reason given";
@@ -26,7 +26,7 @@ std::string reason_besides(const std::string& file) {
 }  // namespace
 
 Result<const ImageLibrary*> load_image_library(const std::string& file) {
-  // Lazy, as the program's own libraries are: binding every function of 270 of them takes its time.
+  // Lazy binding as for the program's own libraries; binding all functions of 270 libraries takes time.
   void* const module = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (module == nullptr)
     return fail(ErrorCode::io, fmt::format("{} cannot be loaded: {}", file, reason_besides(file)), kHint);

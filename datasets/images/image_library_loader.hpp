@@ -1,4 +1,4 @@
-// Loads the module that is the image library.
+// Loads the module of the image library.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace fusebench::images {
 
-/// The image library in a module, which stays loaded. file: a name is looked for in the folders that the
-/// program was linked with, then in those of the system; a path is taken as it is. Errors: io (no such file,
-/// a library that it needs is missing, or it is of another build).
+/// Loads the image library from a module, which stays loaded. file: a name is searched in the folders of the
+/// program's run path and of the system; a path is used as given. Errors: io (no such file, a missing
+/// dependency, or another build).
 [[nodiscard]] Result<const ImageLibrary*> load_image_library(const std::string& file);
 
-/// The image library of this build. The first call loads it, from any thread; the same answer ever after.
-/// Errors as above.
+/// The image library of this build. Loaded by the first call (thread-safe); later calls return the same
+/// result. Errors as above.
 [[nodiscard]] const Result<const ImageLibrary*>& image_library();
 
 }  // namespace fusebench::images

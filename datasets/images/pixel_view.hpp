@@ -1,4 +1,4 @@
-// The pixels of an image of any kind, as libraries take them.
+// A view of the pixels of any image, for libraries.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,7 @@ namespace fusebench::images {
 
 enum class SampleType { uint8, uint16, float32, other };
 
-/// Rows from the top without padding, the channels of a pixel beside each other, samples of the machine's
-/// byte order.
+/// Rows from the top without padding, interleaved channels, samples in native byte order.
 struct PixelView {
   int width_px = 0;
   int height_px = 0;

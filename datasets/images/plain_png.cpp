@@ -28,7 +28,7 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
-/// As PNG and gzip define it.
+/// CRC-32 of PNG and gzip.
 std::uint32_t checksum(std::string_view bytes) {
   return crc32_gzip_refl(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
 }
@@ -38,8 +38,8 @@ struct Chunk {
   std::string_view data;
 };
 
-/// Takes the first chunk off; none if it is cut short or its checksum is wrong. A chunk: length of its data,
-/// four letters of its type, data, checksum of type and data.
+/// Removes and returns the first chunk; nothing if it is truncated or its checksum is wrong. Layout: data
+/// length, four letters of the type, data, checksum of type and data.
 std::optional<Chunk> take_chunk(std::string_view& rest) {
   constexpr std::size_t kFrame = 12;
   if (rest.size() < kFrame) return std::nullopt;
@@ -51,13 +51,13 @@ std::optional<Chunk> take_chunk(std::string_view& rest) {
   return chunk;
 }
 
-/// Everything between signature and end.
+/// The chunks between signature and end.
 struct Chunks {
   std::string_view header;
   std::span<std::uint8_t> pixels;  ///< compressed
 };
 
-/// Moves a chunk's data behind what is joined already; it lies behind that in the same content.
+/// Appends the data of a chunk, which is at a later position of the same content, to the joined data.
 void join(std::string_view data, ByteBuffer& content, std::span<std::uint8_t>& joined) {
   const auto at = static_cast<std::size_t>(data.data() - content.text().data());
   std::uint8_t* const begin = joined.empty() ? &content.bytes[at] : joined.data();
@@ -65,7 +65,7 @@ void join(std::string_view data, ByteBuffer& content, std::span<std::uint8_t>& j
   joined = {begin, joined.size() + data.size()};
 }
 
-/// Joins the pixels of all chunks: then the content holds nothing else of use but the header.
+/// Joins the data of all pixel chunks. Overwrites the rest of the content except the header.
 std::optional<Chunks> join_chunks(ByteBuffer& content) {
   std::string_view rest = content.text();
   if (!rest.starts_with(kSignature)) return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<Chunks> join_chunks(ByteBuffer& content) {
   const std::optional<Chunk> first = take_chunk(rest);
   if (!first || first->type != "IHDR" || first->data.size() != kHeaderBytes) return std::nullopt;
   Chunks chunks{first->data, {}};
-  bool after_pixels = false;  // they must not be interrupted
+  bool after_pixels = false;  // pixel chunks must be consecutive
   while (const std::optional<Chunk> chunk = take_chunk(rest)) {
     if (chunk->type == "IEND") return chunks;
     if (chunk->type == "IDAT") {
@@ -82,18 +82,19 @@ std::optional<Chunks> join_chunks(ByteBuffer& content) {
       continue;
     }
     after_pixels = !chunks.pixels.empty();
-    // A small first letter: readers may pass over it; all do, but for transparency.
+    // Ancillary chunks (small first letter) are ignored, except transparency.
     const bool ancillary = (chunk->type[0] & 0x20) != 0;
     if (!ancillary || chunk->type == "tRNS") return std::nullopt;
   }
   return std::nullopt;
 }
 
-/// None if the compressed stream is damaged, which its checksum tells, or does not hold exactly this much.
+/// Nothing if the compressed stream is damaged (by its checksum) or has another size.
 std::optional<ByteBuffer> inflate(std::span<std::uint8_t> compressed, std::size_t size) {
-  // A header may claim any size, but one byte makes at most 1032.
+  // A header may claim any size, but one byte expands to at most 1032.
   constexpr std::size_t kMaxPerByte = 1032;
-  constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();  // the library counts so far
+  // limit of the library's counter
+  constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();
   if (size / kMaxPerByte > compressed.size() || std::max(size, compressed.size()) > kMaxBytes)
     return std::nullopt;
   ByteBuffer inflated(size);
@@ -108,7 +109,7 @@ std::optional<ByteBuffer> inflate(std::span<std::uint8_t> compressed, std::size_
   return sound ? std::optional(std::move(inflated)) : std::nullopt;
 }
 
-/// rows: each behind the number of its filter. False if there is no such filter.
+/// rows: each preceded by its filter number. False for an unknown filter.
 template <std::size_t kPixelBytes>
 bool undo_filters(const ByteBuffer& rows, std::span<std::uint8_t> samples, std::size_t row_bytes) {
   const std::vector<std::uint8_t> nothing(row_bytes, 0);
@@ -133,7 +134,7 @@ void from_big_endian(std::vector<std::uint16_t>& values) {
   }
 }
 
-/// layout: bits a sample, kind of colour, compression, filtering, interlacing, as in the header.
+/// layout: as in the header: bits per sample, colour type, compression, filtering, interlacing.
 template <class Pixel>
 std::optional<Image<Pixel>> decode_plain_png(ByteBuffer content, std::string_view layout) {
   const std::optional<Chunks> chunks = join_chunks(content);

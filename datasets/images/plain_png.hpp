@@ -1,4 +1,4 @@
-// The PNG files that recordings are made of, decoded several times faster than by a library for all of them.
+// Fast decoder for the PNG files of recordings.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,8 @@
 
 namespace fusebench::images {
 
-/// A PNG with red, green and blue of 8 bits, or grey of 16, neither interlaced nor with transparency, whose
-/// chunks and checksums are in order. None for any other file, sound or not: then a complete decoder has to
-/// decode or diagnose it.
+/// Decodes a PNG with 8-bit red, green and blue or 16-bit grey, not interlaced, without transparency, with
+/// valid chunks and checksums. Nothing for any other file, valid or not; use the image library then.
 [[nodiscard]] std::optional<ColorImage> decode_plain_png_color(ByteBuffer content);
 [[nodiscard]] std::optional<Image<std::uint16_t>> decode_plain_png_grey16(ByteBuffer content);
 [[nodiscard]] std::optional<ColorImage> read_plain_png_color(const std::filesystem::path& file);

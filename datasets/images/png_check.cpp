@@ -30,22 +30,22 @@ std::uint32_t checksum(std::string_view bytes) {
 }  // namespace
 
 std::optional<ClaimedSize> png_claim(std::string_view bytes) {
-  constexpr std::size_t kWidth = 16;  // behind the signature, the length of the first chunk and its type
+  constexpr std::size_t kWidth = 16;  // offset after the signature and the length and type of the first chunk
   constexpr std::size_t kHeight = kWidth + 4;
   if (bytes.size() < kHeight + 4 || !bytes.starts_with(kSignature) || bytes.substr(12, 4) != "IHDR")
     return std::nullopt;
   return ClaimedSize{big_endian(bytes.substr(kWidth)), big_endian(bytes.substr(kHeight))};
 }
 
-// The decoder ignores checksums and fills the rest of a truncated image with black, and what it does notice
-// it prints on standard error.
+// The decoder ignores checksums, fills truncated images with black, and prints other errors to standard
+// error.
 std::string png_damage(const std::filesystem::path& file) {
   std::ostringstream content;
   content << io::input_file(file).rdbuf();
   const std::string_view bytes = content.view();
   if (!bytes.starts_with(kSignature)) return {};
 
-  // A chunk: length of its data, four letters of its type, data, checksum of type and data.
+  // Chunk layout: data length, four letters of the type, data, checksum of type and data.
   constexpr std::size_t kFrame = 12;
   std::string_view rest = bytes.substr(kSignature.size());
   while (true) {

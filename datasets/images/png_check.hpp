@@ -1,4 +1,4 @@
-// What PNG files claim and what is damaged in them, before a decoder sees them.
+// Checks PNG files for size and damage before decoding.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,12 @@ struct ClaimedSize {
   std::uint32_t height_px = 0;
 };
 
-/// The size that the header of a PNG claims, from the beginning of its bytes: nothing else of it is looked
-/// at. None if it is no PNG, or ends before.
+/// The size in the header of a PNG, from its first bytes only. Nothing if it is not a PNG or truncated.
 [[nodiscard]] std::optional<ClaimedSize> png_claim(std::string_view bytes);
 
-/// What is wrong with a PNG file's chunks ("truncated PNG ...", "damaged PNG ..."), by their lengths and
-/// checksums; empty if nothing is, or if the file is not a PNG (or cannot be read: whoever opens it next will
-/// say so).
+/// Describes damage in the chunks of a PNG file ("truncated PNG ...", "damaged PNG ..."), by their lengths
+/// and checksums. Empty if there is none, if the file is not a PNG, or if it cannot be read (the decoder
+/// reports that).
 [[nodiscard]] std::string png_damage(const std::filesystem::path& file);
 
 }  // namespace fusebench::images

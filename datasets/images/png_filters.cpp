@@ -12,14 +12,14 @@ namespace {
 using ConstRow = std::span<const std::uint8_t>;
 using Row = std::span<std::uint8_t>;
 
-// Vector types of the compiler: the same bytes with any instruction set.
+// Compiler vector types: the same result with any instruction set.
 using Bytes4 [[gnu::vector_size(4)]] = std::uint8_t;
 using Bytes16 [[gnu::vector_size(16)]] = std::uint8_t;
 using Shorts4 [[gnu::vector_size(8)]] = std::int16_t;
 
 constexpr std::size_t kLanes = sizeof(Bytes16);
 
-/// Lane i becomes that of i - kBy, and the first lanes zero.
+/// Moves lane i - kBy to lane i and sets the first lanes to zero.
 template <std::size_t kBy>
 Bytes16 moved_up(Bytes16 bytes) {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) {
@@ -28,7 +28,7 @@ Bytes16 moved_up(Bytes16 bytes) {
   (std::make_index_sequence<kLanes>());
 }
 
-/// The pixel that begins at kFirst, over and over.
+/// Repeats the pixel at kFirst.
 template <std::size_t kFirst, std::size_t kPixelBytes>
 Bytes16 repeated(Bytes16 bytes) {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) {
@@ -37,8 +37,8 @@ Bytes16 repeated(Bytes16 bytes) {
   (std::make_index_sequence<kLanes>());
 }
 
-/// Filter 1: every byte was stored less that of the pixel before. Sums of up to 2, 4 and 8 pixels make the
-/// sums of all that a vector holds.
+/// Reverses filter 1, the difference to the previous pixel. Prefix sums of 2, 4 and 8 pixels give those of a
+/// whole vector.
 template <std::size_t kPixelBytes>
 void add_left(ConstRow filtered, Row row) {
   constexpr std::size_t kStep = kLanes / kPixelBytes * kPixelBytes;
@@ -60,12 +60,12 @@ void add_left(ConstRow filtered, Row row) {
   }
 }
 
-/// Filter 2: less the byte above.
+/// Reverses filter 2, the difference to the byte above.
 void add_above(ConstRow filtered, ConstRow above, Row row) {
   for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<std::uint8_t>(filtered[i] + above[i]);
 }
 
-/// Filter 3: less the mean of the pixel before and the one above, rounded down.
+/// Reverses filter 3, the difference to the mean of the previous pixel and the one above, rounded down.
 template <std::size_t kPixelBytes>
 void add_mean(ConstRow filtered, ConstRow above, Row row) {
   std::array<std::uint8_t, kPixelBytes> left{};
@@ -77,7 +77,7 @@ void add_mean(ConstRow filtered, ConstRow above, Row row) {
   }
 }
 
-/// Four bytes from there on, or as many as there are.
+/// Loads up to four bytes.
 template <std::size_t kCount>
 Shorts4 load(const std::uint8_t* from) {
   Bytes4 bytes{};
@@ -87,8 +87,8 @@ Shorts4 load(const std::uint8_t* from) {
 
 Shorts4 magnitude(Shorts4 values) { return values < 0 ? -values : values; }
 
-/// Filter 4: less the one of left, above and above left (corner) that is closest to left + above - corner;
-/// the first of them where several are.
+/// Reverses filter 4: the difference to the one of left, above and above left (corner) that is closest to
+/// left + above - corner, the first one on a tie.
 template <std::size_t kPixelBytes>
 void add_paeth(ConstRow filtered, ConstRow above, Row row) {
   Shorts4 left{};
@@ -106,7 +106,7 @@ void add_paeth(ConstRow filtered, ConstRow above, Row row) {
     const Bytes4 sums = __builtin_convertvector(left, Bytes4);
     std::memcpy(&row[at], &sums, kCount);
   };
-  constexpr std::size_t kAtOnce = sizeof(Bytes4);  // more than a pixel: the rest is overwritten by the next
+  constexpr std::size_t kAtOnce = sizeof(Bytes4);  // wider than a pixel; the next pixel overwrites the rest
   std::size_t at = 0;
   for (; at + kAtOnce <= row.size(); at += kPixelBytes) add_pixel.template operator()<kAtOnce>(at);
   for (; at < row.size(); at += kPixelBytes) add_pixel.template operator()<kPixelBytes>(at);

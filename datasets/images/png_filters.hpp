@@ -1,4 +1,4 @@
-// The filters of PNG rows (PNG specification, section 9), undone.
+// Reverses the filters of PNG rows (PNG specification, section 9).
 #pragma once
 
 #include <cstddef>
@@ -7,10 +7,10 @@
 
 namespace fusebench::images {
 
-/// Undoes the filter of a row of pixels with kPixelBytes bytes: 2 or 3. filtered: the row as it is stored,
-/// less the number of its filter. above: the row before with its filter undone, zeros for the first. All
-/// three rows have the same size, a whole number of pixels, and `row` shares no memory with the others. False
-/// if there is no such filter; they are numbered 0 to 4.
+/// Reverses the filter of a row of pixels with kPixelBytes bytes (2 or 3). filtered: stored row without its
+/// filter number. above: the previous reconstructed row, zeros for the first. All three rows have the same
+/// size, a whole number of pixels, and `row` does not overlap the others. False for a filter other than 0 to
+/// 4.
 template <std::size_t kPixelBytes>
 [[nodiscard]] bool undo_png_filter(int filter, std::span<const std::uint8_t> filtered,
                                    std::span<const std::uint8_t> above, std::span<std::uint8_t> row);

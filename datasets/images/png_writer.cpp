@@ -17,8 +17,8 @@ namespace fusebench::images {
 
 namespace {
 
-// Colour of 640x480 pixels with sensor noise: 8 ms, and 1 % fewer bytes than level 2, since noise has few
-// repetitions to search for.
+// Fastest level: 8 ms for a noisy colour image of 640x480 pixels, and 1 % fewer bytes than level 2, since
+// noise has few repetitions.
 constexpr int kCompressionLevel = 1;
 constexpr std::uint8_t kFilterSub = 1;
 
@@ -37,7 +37,7 @@ void append_chunk(std::string_view type, std::span<const std::uint8_t> content, 
   append_number(libdeflate_crc32(0, file.data() + begin, file.size() - begin), file);
 }
 
-/// Width, height, bits of a sample, colour type; methods of compression, filter and interlace are 0.
+/// Width, height, bits per sample, colour type; compression, filter and interlace methods are 0.
 Bytes header_of(const PixelView& image) {
   constexpr std::uint8_t kGreyType = 0;
   constexpr std::uint8_t kColorType = 2;
@@ -50,7 +50,7 @@ Bytes header_of(const PixelView& image) {
   return header;
 }
 
-/// Rows in the file's byte order, each after the type of its filter: differences to the pixel before
+/// Rows in the byte order of the file, each after its filter type: differences to the previous pixel
 /// (specification, 9.2).
 Bytes filtered_rows(const PixelView& image) {
   const bool wide = image.type == SampleType::uint16;
@@ -72,7 +72,7 @@ Bytes filtered_rows(const PixelView& image) {
   return filtered;
 }
 
-/// In the zlib format. Empty if there is not enough memory for the compressor.
+/// Compresses to the zlib format. Empty if memory is exhausted.
 Bytes compressed(const Bytes& content) {
   const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
       libdeflate_alloc_compressor(kCompressionLevel), libdeflate_free_compressor);

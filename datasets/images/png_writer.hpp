@@ -11,10 +11,10 @@
 
 namespace fusebench::images {
 
-/// A PNG of one or three channels. Empty if there is not enough memory for the compressor.
+/// Encodes a PNG of one or three channels. Empty if memory is exhausted.
 [[nodiscard]] std::vector<std::uint8_t> png_bytes(const PixelView& image);
 
-/// Writes a PNG of one or three channels, whatever the file's name ends with. Not written: the reason.
+/// Writes a PNG of one or three channels, whatever the extension of the file. On failure, returns the reason.
 [[nodiscard]] tl::expected<void, std::string> write_png_file(const std::filesystem::path& file,
                                                              const PixelView& image);
 

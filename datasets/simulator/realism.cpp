@@ -10,18 +10,18 @@ namespace {
 
 constexpr std::uint64_t kDevice = 0xDE;  // key of an independent random stream
 
-// Read-outs of a Kinect (Ringaby & Forssen, ICCV 2011). Its depth is taken 18 ms before its stamp says, as
-// measured on freiburg1_rpy (camera_presets.cpp); of other cameras nothing is known, 6 ms are an assumption.
+// Read-outs of a Kinect (Ringaby & Forssen, ICCV 2011). Its depth is captured 18 ms before its stamp, as
+// measured on freiburg1_rpy (camera_presets.cpp). For other cameras, 6 ms are an assumption.
 constexpr double kColorReadout_s = 0.0261;
 constexpr double kDepthReadout_s = 0.0305;
 constexpr double kKinectDepthDelay_s = -0.018;
 constexpr double kOtherDepthDelay_s = 0.006;
 
-// Stamps of a driver without hardware clock: assumptions of the order of what TUM RGB-D shows.
+// Stamps of a driver without a hardware clock: assumptions of the order of TUM RGB-D.
 constexpr double kJitter_s = 0.001;
 constexpr double kDroppedShare = 0.01;
 
-// What nobody has calibrated.
+// Errors without a calibration.
 constexpr double kUntoldOffset_s = 0.005;
 constexpr faults::CalibrationError kExtrinsicError{1.0, 1.0};
 // Consumer IMUs without factory calibration (Tedaldi, Pretto & Menegatti, "A robust and easy to implement
@@ -31,7 +31,7 @@ constexpr double kGainError = 0.02;
 constexpr double kMisalignment_rad = radians(0.5);
 constexpr double kGyroscopeRange_radps = radians(500.0);
 
-/// Scale errors on the diagonal, angles between the axes beside it, each uniform within its bound.
+/// Scale errors on the diagonal, axis misalignments off the diagonal, each uniform within its bound.
 Matrix3d gain_of(random::RandomSequence& random) {
   Matrix3d gain;
   for (Eigen::Index row = 0; row < 3; ++row) {
@@ -86,7 +86,7 @@ void make_realistic(SimulationOptions& options) {
   options.untold_shutters = true;
   options.stamps = {kJitter_s, kDroppedShare};
   options.auto_exposure.on = true;
-  options.gain_drift = 0;  // the controller's, instead
+  options.gain_drift = 0;  // replaced by the drift of the exposure control
   options.color_processing = kinect_color();
   if (options.depth_noise == sensors::DepthNoise::handa) options.depth_noise = sensors::DepthNoise::kinect;
   options.depth_errors = kinect_depth();

@@ -32,7 +32,7 @@ std::string_view to_string(RoomKind room) {
 RoomKind room_of(motion::MotionPreset preset) {
   using motion::MotionPreset;
   switch (preset) {
-    case MotionPreset::sweep:  // surfaces near enough for a sweep, with free space before them
+    case MotionPreset::sweep:  // near surfaces with free space in front, for a sweep
       return RoomKind::storage;
     case MotionPreset::shake_revisit:
       return RoomKind::office;

@@ -1,4 +1,4 @@
-// The scenes that a seed makes, and which of them a preset takes place in.
+// Generated scenes, and the scene of each preset.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ enum class RoomKind {
   furnished,   ///< room.hpp
   storage,     ///< storage_room.hpp
   office,      ///< office.hpp
-  flat,        ///< flat.hpp, as the next one
+  flat,        ///< flat.hpp, also for twin_rooms
   twin_rooms,  ///< two equal rooms
   corridor,    ///< corridor.hpp
   gallery,     ///< gallery.hpp

@@ -23,17 +23,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so that samples surround it
+constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so that samples enclose it
 constexpr double kLongest_s = 3600;
-// With half of the longest read-out, depth is still within the motion, which goes on for
+// With half of the longest read-out, depth is still within the motion, which continues for
 // MotionSpan::kTail_ns.
 constexpr double kMaxDelay_s = 0.05;
-// With an uncalibrated late clock readers need samples beyond the usual end; with the tail above, they are
-// within MotionSpan::kTail_ns.
+// With an uncalibrated late clock, readers require samples beyond the usual end; with the tail above, they
+// are within MotionSpan::kTail_ns.
 constexpr double kMaxUntold_s = 0.04;
-constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
+constexpr int kTruthPerFrame = 3;  // ground-truth poses per frame, since readers interpolate
 
-/// Readers of some formats refuse other rates (zr300) or count frames (icl).
+/// Some formats do not permit other rates (zr300) or number their frames (icl).
 Result<void> check_rate(const SimulationOptions& o) {
   const layouts::LayoutDescription& layout = layouts::describe(o.layout);
   if (o.rate_hz >= layout.lowest_rate_hz && o.rate_hz <= layout.highest_rate_hz) return {};
@@ -76,7 +76,7 @@ Result<void> check_options(const SimulationOptions& o) {
   return motion::check_file_motion(o.file_motion);
 }
 
-/// The motion that was chosen, before its body is known.
+/// The selected motion of the camera, without its body.
 struct Drive {
   synthetic_imu::PoseSpline camera;
   double shrunk = 1;
@@ -123,7 +123,7 @@ Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
   return frame_ns;
 }
 
-/// Stamps and gaps of the images: those of the sensors, and the faults'.
+/// Applies the stamp errors of the sensors and the faults to the image lists.
 void stamp_images(const SimulationOptions& options, CaptureSetup& setup) {
   const layouts::LayoutDescription& layout = layouts::describe(options.layout);
   sensors::StampErrors errors = options.stamps;
@@ -154,13 +154,13 @@ Result<Drive> choose_motion(const SimulationOptions& options, const std::optiona
   return Drive{std::move(*camera)};
 }
 
-/// Poses of the colour camera at every frame and evenly between frames.
+/// Poses of the colour camera at each frame and at equal steps between frames.
 Trajectory true_poses(const CaptureSetup& setup) {
   Trajectory truth;
   const auto add = [&](std::int64_t time_ns) {
     truth.push_back({time_ns, setup.body.evaluate(time_ns).T_world_body * setup.T_body_color});
   };
-  // One more at both ends: readers may find the capture a little before or after its stamp.
+  // Adds one pose at both ends, since the capture may be slightly before or after its stamp.
   const std::int64_t step_ns = (setup.frame_ns[1] - setup.frame_ns[0]) / kTruthPerFrame;
   add(setup.frame_ns.front() - step_ns);
   for (std::size_t k = 0; k + 1 < setup.frame_ns.size(); ++k) {
@@ -172,7 +172,7 @@ Trajectory true_poses(const CaptureSetup& setup) {
   return truth;
 }
 
-/// Everything but the images.
+/// Writes all files except the images.
 Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& setup,
                         const motion::MotionSpan& span, Mesh scene, const fs::path& folder,
                         SimulationReport& report) {
@@ -200,8 +200,8 @@ Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& se
   return layouts::write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
 }
 
-/// Whether the folder already holds this recording, complete as far as its reader checks. Error usage if it
-/// holds anything else.
+/// True if the folder already has this complete recording, by the checks of its reader. Error usage if it has
+/// other content.
 Result<bool> is_there(const fs::path& folder, const std::string& identity) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return false;

@@ -14,7 +14,7 @@ namespace fusebench::simulator {
 
 namespace {
 
-/// To be raised when the same options produce other bytes.
+/// Increase it when the same options give other bytes.
 constexpr int kSimulatorVersion = 3;
 
 std::string_view name_of(sensors::DepthNoise noise) {
@@ -66,7 +66,7 @@ std::string motion_text(const SimulationOptions& o) {
       toml_text(motion::to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
       m.position_hz.high_hz, m.rotation_hz.low_hz, m.rotation_hz.high_hz, m.pan_share, m.shake_share,
       m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s,
-      // Only then, so that other recordings keep their identity.
+      // Conditional, so that other recordings keep their identity.
       m.sideways ? "sideways = true\n" : "", hand_text(m));
 }
 
@@ -98,7 +98,7 @@ std::string scene_text(const SimulationOptions& o) {
                      toml_text(o.scene_file.filename().string()), o.scene.y_up, o.scene.metres_per_unit);
 }
 
-/// Nothing if there are none, so that recordings without faults keep their identity.
+/// Empty without faults, so that recordings without faults keep their identity.
 std::string faults_text(const SimulationOptions& o) {
   std::string text;
   if (!o.faults.empty()) {
@@ -115,7 +115,7 @@ std::string faults_text(const SimulationOptions& o) {
   return text;
 }
 
-/// All options but the calibration, which has a file of its own.
+/// All options except the calibration, which has a separate file.
 std::string options_text(const SimulationOptions& o) {
   return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}{}",
                      kSimulatorVersion, toml_text(layouts::to_string(o.layout)), o.seed, o.duration_s,
@@ -130,7 +130,7 @@ Result<std::string> simulation_identity(const SimulationOptions& options) {
   fingerprint.add(calibration::to_toml(options.rig));
   for (const auto& file : {options.scene_file, options.trajectory_file}) {
     if (file.empty()) continue;
-    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 33;  // it is hashed before it is looked into
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 33;  // limit for hashing
     std::error_code ignored;
     if (const auto size = std::filesystem::file_size(file, ignored); !ignored && size > kMostBytes)
       return fail(ErrorCode::data_corrupt,

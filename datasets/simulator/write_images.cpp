@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMaxFaultSamples = 64;
 
-/// A longer exposure is made of more instants, so that the steps between them stay as small. 0: by the
+/// The number of instants is proportional to the exposure, which keeps the steps constant. 0: by the image
 /// motion.
 int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
   if (options.blur_samples == 0 || options.exposure_s <= 0 || exposure_s <= options.exposure_s)
@@ -30,7 +30,7 @@ int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
   return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMaxFaultSamples})));
 }
 
-/// exposure: that of the controller, if there is one.
+/// exposure: of the controller, if there is one.
 sensors::ColorSensor color_sensor(const SimulationOptions& options, const faults::FrameFaults& faults,
                                   const sensors::FrameExposure* exposure) {
   sensors::ColorSensor sensor;
@@ -63,7 +63,7 @@ sensors::DepthSensor depth_sensor(const SimulationOptions& options) {
   return sensor;
 }
 
-/// The person that a fault sends through the view of a camera that is placed by T_color_camera.
+/// The person of a fault in front of a camera at T_color_camera.
 sensors::MovingObject walking_person(const faults::Scenery& scenery, const CaptureSetup& setup,
                                      const faults::SimulatedFault& fault, const SE3& T_color_camera) {
   const std::int64_t first_ns = setup.frame_ns.front();
@@ -80,7 +80,7 @@ sensors::MovingObject walking_person(const faults::Scenery& scenery, const Captu
           }};
 }
 
-/// The hand or the person before a camera that is placed by T_color_camera.
+/// The hand or the person in front of a camera at T_color_camera.
 std::optional<sensors::MovingObject> object_before(const SimulationOptions& options,
                                                    const faults::Scenery& scenery, const CaptureSetup& setup,
                                                    const faults::FrameFaults& faults,
@@ -94,7 +94,7 @@ std::optional<sensors::MovingObject> object_before(const SimulationOptions& opti
                                }};
 }
 
-/// What the exposure controller meters: the light of a coarse image of each frame, without blur.
+/// Input of the exposure controller: light of a coarse image of each frame, without blur.
 std::vector<std::vector<float>> metered_light(const SimulationOptions& options, const CaptureSetup& setup,
                                               const faults::Scenery& scenery, const Workers& workers) {
   constexpr int kWidth_px = 40;
@@ -130,12 +130,12 @@ struct ImageContext {
   std::vector<sensors::FrameExposure> exposures;  // by frame; empty without a controller
   rays::RayField color_rays;
   std::optional<sensors::DepthDistortion> depth_distortion;
-  Workers alone{1};  // frames are what runs in parallel
+  Workers alone{1};  // frames are processed in parallel, not their rows
 
   ImageContext(const SimulationOptions& options_in, const CaptureSetup& setup_in,
                const faults::Scenery& scenery_in, const Workers& workers)
       : options(options_in), setup(setup_in), scenery(scenery_in), color_rays(options.rig.color, workers) {
-    // Registered depth has the pixels of the colour image, which are distorted.
+    // Registered depth has the distorted pixels of the colour image.
     if (!options.rig.depth && !options.rig.color.distortion.is_zero())
       depth_distortion.emplace(options.rig.color, workers);
     if (options.auto_exposure.on) {

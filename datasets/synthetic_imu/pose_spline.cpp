@@ -47,7 +47,7 @@ Kinematics PoseSpline::evaluate(std::int64_t timestamp_ns) const {
     const Vector3d turn = so3_log(rotation_world_body[i].conjugate() * rotation_world_body[i + 1]);
     const Quaterniond factor = so3_exp(at.basis.weight[j] * turn);
     k.T_world_body.rotation = (k.T_world_body.rotation * factor).normalized();
-    // The rate so far turns into the axes after this factor; the factor's own axis stays.
+    // The rate so far is rotated to the axes after this factor; the axis of the factor is unchanged.
     k.angular_velocity_body_radps =
         factor.conjugate() * k.angular_velocity_body_radps + at.basis.rate[j] * turn;
   }

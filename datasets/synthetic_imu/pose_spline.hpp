@@ -1,5 +1,4 @@
-// A continuous-time trajectory: uniform cubic B-splines of position (in R^3) and of orientation (cumulative,
-// on SO(3)).
+// Continuous-time trajectory: uniform cubic B-splines of position (R^3) and orientation (cumulative, SO(3)).
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 
 namespace fusebench::synthetic_imu {
 
-/// The state of a moving body at one time.
+/// Motion of a body at an instant.
 struct Kinematics {
   SE3 T_world_body;
   Vector3d angular_velocity_body_radps = Vector3d::Zero();
@@ -20,24 +19,24 @@ struct Kinematics {
   Vector3d acceleration_world_mps2 = Vector3d::Zero();
 };
 
-/// Weights of the cumulative basis: value = c0 + sum_j weight[j] (c_{j+1} - c_j) on one segment (Sommer et
-/// al., CVPR 2020, Sec. 3), and their derivatives by time.
+/// Weights of the cumulative basis on one segment, value = c0 + sum_j weight[j] (c_{j+1} - c_j) (Sommer et
+/// al., CVPR 2020, Sec. 3), and their time derivatives.
 struct CumulativeBasis {
   std::array<double, 3> weight{};
   std::array<double, 3> rate{};          ///< 1/s
   std::array<double, 3> acceleration{};  ///< 1/s^2
 };
 
-/// Where a time lies: the segment (control points segment to segment + 3) and the basis there.
+/// Segment of an instant (control points segment to segment + 3) and the basis there.
 struct SplinePlace {
   std::size_t segment = 0;
   CumulativeBasis basis;
 };
 
-/// Control point i acts mostly at start + (i - 1) spacing. Twice continuously differentiable.
+/// Control point i has its maximum weight at start + (i - 1) spacing. Twice continuously differentiable.
 class PoseSpline {
  public:
-  /// All control points start as identity. Covers at least [start_ns, end_ns].
+  /// All control points are initially the identity. Covers at least [start_ns, end_ns].
   PoseSpline(std::int64_t start_ns, std::int64_t end_ns, std::int64_t spacing_ns);
 
   [[nodiscard]] std::int64_t start_ns() const { return start_ns_; }
@@ -46,7 +45,7 @@ class PoseSpline {
     return start_ns_ + (static_cast<std::int64_t>(i) - 1) * spacing_ns_;
   }
 
-  /// Times outside of the covered span extend the first or last segment.
+  /// Instants outside the covered span extrapolate the first or last segment.
   [[nodiscard]] SplinePlace place(std::int64_t timestamp_ns) const;
   [[nodiscard]] Kinematics evaluate(std::int64_t timestamp_ns) const;
 
@@ -58,20 +57,19 @@ class PoseSpline {
   std::int64_t spacing_ns_;
 };
 
-/// How a spline is fitted to measured poses.
+/// Options of the fit of a spline to measured poses.
 ///
-/// Motion capture jitters from sample to sample, so the fit must smooth. It minimises
-///   sum_i |x(t_i) - x_i|^2 + 1 / (dt (2 pi f)^4) integral |x''|^2 dt,
-/// which passes motion of frequency nu with the gain 1 / (1 + (nu / f)^4): 1 below the cutoff f, where dt is
-/// the median spacing of the poses. f = 12 Hz is where the residuals of TUM freiburg1_rpy (fast hand-held
-/// rotation) are closest to white, i.e. where what is taken away looks like noise rather than motion; the
-/// photometric error of warping images by the smoothed truth has its minimum there, too. The knots only have
-/// to resolve the cutoff: 20 ms carries 25 Hz.
+/// Motion capture has jitter between samples, so the fit must smooth. It minimises
+/// sum_i |x(t_i) - x_i|^2 + 1 / (dt (2 pi f)^4) integral |x''|^2 dt,
+/// with the gain 1 / (1 + (nu / f)^4) for motion of frequency nu: 1 below the cutoff f. dt is the median
+/// spacing of the poses. With f = 12 Hz the residuals of TUM freiburg1_rpy (fast hand-held rotation) are
+/// closest to white, so the removed part is mostly noise. The photometric error of images warped by the
+/// smoothed ground truth has its minimum there too. The knots must resolve the cutoff: 20 ms resolves 25 Hz.
 struct SplineFitOptions {
   double knot_spacing_s = 0.02;
   double cutoff_hz = 12.0;
   double outlier_rotation_rad =
-      0.005;  ///< residuals above count linearly (Huber); about 5 times the usual jitter
+      0.005;  ///< larger residuals count linearly (Huber); about 5 times the usual jitter
   double outlier_position_m = 0.001;
 };
 
@@ -82,8 +80,8 @@ struct SplineFit {
   bool converged = false;
 };
 
-/// Fits with one thread; the result depends on nothing but the arguments. Errors: configuration (an option
-/// out of range), data_corrupt (fewer than 4 poses, or the solver failed).
+/// Fits with one thread; deterministic. Errors: configuration (an option out of range), data_corrupt (fewer
+/// than 4 poses, or the solver failed).
 [[nodiscard]] Result<SplineFit> fit_pose_spline(const Trajectory& truth, const SplineFitOptions& options);
 
 }  // namespace fusebench::synthetic_imu

@@ -20,7 +20,7 @@ namespace fusebench::synthetic_imu {
 
 namespace {
 
-// Quaternions within the solver are (w, x, y, z), its own order.
+// Quaternions in the order of the solver, (w, x, y, z).
 template <class T>
 using Q = std::array<T, 4>;
 template <class T>
@@ -32,7 +32,7 @@ V<T> turn_between(const T* from, const T* to) {
   Q<T> relative;
   ceres::QuaternionProduct(inverse.data(), to, relative.data());
   V<T> turn;
-  ceres::QuaternionToAngleAxis(relative.data(), turn.data());  // the short way round, whatever the signs
+  ceres::QuaternionToAngleAxis(relative.data(), turn.data());  // shorter rotation, for any sign
   return turn;
 }
 
@@ -62,9 +62,9 @@ struct RotationResidual {
   }
 };
 
-/// The integral of |x''|^2 over one segment, as two residuals an axis. x'' is linear there, from a to b at
-/// its knots, so the integral is h ((a + b)^2 / 4 + (a - b)^2 / 12). a and b are second differences of
-/// control points; the weight holds the rest.
+/// Integral of |x''|^2 over one segment, as two residuals per axis. x'' is linear there, from a to b, so the
+/// integral is h ((a + b)^2 / 4 + (a - b)^2 / 12). a and b are second differences of control points; the
+/// weight contains the other factors.
 template <class T>
 void integral_residuals(const T& a, const T& b, double weight, T* residual) {
   residual[0] = 0.5 * weight * (a + b);
@@ -141,9 +141,9 @@ double median_spacing_s(const Trajectory& truth) {
   return seconds_between(0, upper_median(std::move(spacing)));
 }
 
-/// Weight of a second difference of control points, so that its sum of squares is the regularisation's
-/// integral. At a knot x'' = (c0 - 2 c1 + c2) / spacing^2, and the integral is the sum over knots times the
-/// spacing.
+/// Weight of a second difference of control points whose sum of squares is the integral of the
+/// regularisation. At a knot x'' = (c0 - 2 c1 + c2) / spacing^2, and the integral is the sum over knots times
+/// the spacing.
 double smoothness_weight(const SplineFitOptions& options, double truth_spacing_s) {
   const double omega = 2 * std::numbers::pi * options.cutoff_hz;
   const double h = options.knot_spacing_s;
@@ -167,7 +167,7 @@ bool solve(ceres::Problem& problem) {
   ceres::Solver::Options options;
   options.num_threads = 1;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Eigen's own factorisation: a BLAS chooses its kernels, and so the last bits, by the processor.
+  // Eigen's factorisation, since a BLAS selects kernels, and so the last bits, by the processor.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = 50;
   options.function_tolerance = 1e-8;
@@ -208,7 +208,7 @@ bool fit_rotation(const Trajectory& truth, const SplineFitOptions& options, doub
 
 bool fit_position(const Trajectory& truth, const SplineFitOptions& options, double smoothness,
                   PoseSpline& spline) {
-  // A world may be far from its origin; differences of large numbers would cost digits.
+  // The origin of the world may be far away; differences of large numbers would lose digits.
   const Vector3d origin = truth.front().T_world_camera.translation;
   std::vector<Vector3d>& control = spline.position_world_m;
   for (Vector3d& c : control) c -= origin;

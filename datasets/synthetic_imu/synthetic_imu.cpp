@@ -12,8 +12,8 @@ namespace fusebench::synthetic_imu {
 
 namespace {
 
-/// Normal numbers that are the same everywhere: the standard fixes the engine's bits but leaves the
-/// distribution to each library, so the transform (Box and Muller) is our own.
+/// Platform-independent normal numbers. The standard defines the bits of the engine but not the distribution,
+/// so the Box-Muller transform is implemented here.
 class NormalNumbers {
  public:
   explicit NormalNumbers(std::uint64_t seed) : engine_(seed) {}
@@ -32,7 +32,7 @@ class NormalNumbers {
       spare_.reset();
       return value;
     }
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));  // 1 - u lies in (0, 1]
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));  // 1 - u is in (0, 1]
     const double angle = 2.0 * std::numbers::pi * uniform();
     spare_ = radius * std::sin(angle);
     return radius * std::cos(angle);
@@ -45,7 +45,7 @@ class NormalNumbers {
 
 double combine(double a, double b) { return std::sqrt(a * a + b * b); }
 
-/// Every frame must lie within the truth; the hint names the first run of frames that does.
+/// All frames must be within the ground truth; the hint names the first run of frames that are.
 Result<void> check_coverage(const recording::Recording& recording) {
   const Trajectory& truth = recording.ground_truth;
   const auto covered = [&](const recording::FrameEntry& frame) {
@@ -104,7 +104,7 @@ std::vector<ImuSample> ideal_imu(const PoseSpline& spline, std::int64_t start_ns
                                  double rate_hz, const Vector3d& gravity_world_mps2) {
   const std::int64_t period_ns = std::llround(1e9 / rate_hz);
   std::vector<ImuSample> samples;
-  // Up to the first sample at or after the end, so that samples surround it.
+  // Up to the first sample at or after the end, so that samples enclose it.
   for (std::int64_t time_ns = start_ns; time_ns < end_ns + period_ns; time_ns += period_ns) {
     const Kinematics k = spline.evaluate(time_ns);
     samples.push_back(
@@ -117,8 +117,8 @@ std::vector<ImuSample> ideal_imu(const PoseSpline& spline, std::int64_t start_ns
 std::vector<ImuBias> add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
                                    std::uint64_t seed) {
   NormalNumbers normal(seed);
-  const double per_sample = std::sqrt(rate_hz);      // a density times this is a sample's standard deviation
-  const double per_step = 1.0 / std::sqrt(rate_hz);  // a walk's density times this is a step's
+  const double per_sample = std::sqrt(rate_hz);      // sigma of a sample = density * sqrt(rate)
+  const double per_step = 1.0 / std::sqrt(rate_hz);  // sigma of a step = density of the walk / sqrt(rate)
   ImuBias bias;
   bias.gyroscope_radps = normal.vector(sensor.initial_gyroscope_bias_radps);
   bias.accelerometer_mps2 = normal.vector(sensor.initial_accelerometer_bias_mps2);

@@ -36,9 +36,9 @@ Result<Placeholders> prepare_input(const ExternalProgram& program, const recordi
   fs::path calibration;
   if (program.input) {
     input = place.work_folder / "export";
-    recording::Recording untold = recording;  // a system that is judged does not see the truth
-    untold.ground_truth.clear();
-    const auto exported = exports::export_recording(untold, *program.input, input);
+    recording::Recording without_truth = recording;  // a system that is judged does not see the truth
+    without_truth.ground_truth.clear();
+    const auto exported = exports::export_recording(without_truth, *program.input, input);
     if (!exported) return tl::unexpected(exported.error());
     results.notes = exported->notes;
     calibration = exported->calibration;

@@ -238,21 +238,22 @@ const OffsetCandidate& best_of(std::span<const OffsetCandidate> profile) {
   return *std::ranges::min_element(profile, {}, &OffsetCandidate::misfit);
 }
 
-std::optional<OffsetCandidate> rival_of(const OffsetCandidate& best, std::span<const OffsetCandidate> profile,
-                                        double duration_s) {
+std::optional<OffsetCandidate> ambiguous_candidate(const OffsetCandidate& best,
+                                                   std::span<const OffsetCandidate> profile,
+                                                   double duration_s) {
   constexpr double kApart_s = 0.1;
   constexpr double kSameMinimum_s = 1e-6;  // stamps are multiples of 20 ms
   constexpr double kRounding = 0.01;       // 0.1 mm and 0.1 mrad
   const double limit = (1 + 1.5 / std::sqrt(duration_s)) * (best.misfit + kRounding) - kRounding;
-  std::optional<OffsetCandidate> rival;
+  std::optional<OffsetCandidate> ambiguous;
   for (std::size_t i = 0; i < profile.size(); ++i) {
     const double misfit = profile[i].misfit;
     const bool local = (i == 0 || misfit <= profile[i - 1].misfit) &&
                        (i + 1 == profile.size() || misfit <= profile[i + 1].misfit);
     const bool apart = std::abs(profile[i].offset_s - best.offset_s) > kApart_s - kSameMinimum_s;
-    if (local && apart && misfit < (rival ? rival->misfit : limit)) rival = profile[i];
+    if (local && apart && misfit < (ambiguous ? ambiguous->misfit : limit)) ambiguous = profile[i];
   }
-  return rival;
+  return ambiguous;
 }
 
 OffsetFit fitted_from(const OffsetCandidate& start, const Trajectory& reference,

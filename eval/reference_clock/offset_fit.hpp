@@ -33,9 +33,9 @@ struct OffsetCandidate {
 /// A local minimum of the profile at least 0.1 s from the best one whose misfit exceeds its by less than a
 /// share of 1.5 / sqrt(duration): three standard deviations of a mean of norms, of which as many are
 /// independent as there are seconds, each with a relative scatter of a half.
-[[nodiscard]] std::optional<OffsetCandidate> rival_of(const OffsetCandidate& best,
-                                                      std::span<const OffsetCandidate> profile,
-                                                      double duration_s);
+[[nodiscard]] std::optional<OffsetCandidate> ambiguous_candidate(const OffsetCandidate& best,
+                                                                 std::span<const OffsetCandidate> profile,
+                                                                 double duration_s);
 
 struct OffsetFit {
   double offset_s = 0;

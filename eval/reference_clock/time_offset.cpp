@@ -55,10 +55,10 @@ Result<TimeOffset> fitted_time_offset(const Trajectory& reference, const Traject
                             kLargestOffset_s),
                 "move the stamps of the estimate first (--t_offset)");
   }
-  if (const auto rival = rival_of(best_of(profile), profile, fit.independent)) {
+  if (const auto ambiguous = ambiguous_candidate(best_of(profile), profile, fit.independent)) {
     return fail(ErrorCode::data_corrupt,
                 fmt::format("the clock offset is ambiguous: {:.0f} ms and about {:.0f} ms fit alike",
-                            1e3 * fit.offset_s, 1e3 * rival->offset_s),
+                            1e3 * fit.offset_s, 1e3 * ambiguous->offset_s),
                 "the motion repeats itself; it has to be irregular");
   }
   return TimeOffset{fit.offset_s, fit.sigma_s, fit.motions};

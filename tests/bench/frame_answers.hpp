@@ -74,8 +74,8 @@ inline bool is_gated(const DepthImage& gated_m, const DepthImage& depth_m,
   return 2 * kept > measured && kept < measured;
 }
 
-/// The rolling shutter is undone: most of its difference from the rendered frame is gone. Only the room has
-/// one.
+/// The rolling shutter is compensated: most of its difference from the rendered frame is gone. Only the room
+/// has one.
 inline bool is_as_rendered(const RgbdFrame& compensated, const BenchScene& scene) {
   double before = 0;
   double after = 0;

@@ -29,7 +29,7 @@ void motion_compensation(benchmark::State& state) {
   compensate();
   if (!testing::is_compensated(frame, scene)) return state.SkipWithError("not what the plain search finds");
   if (scene.kind == testing::SceneKind::room && !testing::is_as_rendered(frame, scene))
-    return state.SkipWithError("the rolling shutter is not undone");
+    return state.SkipWithError("the rolling shutter is not compensated");
   for (auto _ : state) compensate();
   const std::size_t pixels = frame.grey.data.size();
   // Grey and depth in, the same out.

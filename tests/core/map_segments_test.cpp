@@ -96,7 +96,7 @@ TEST(MapSegments, FramesThatWereNotFusedAreNotFusedAgain) {
   EXPECT_FALSE(segments.fused_state(1, {}));
 }
 
-TEST(MapSegments, WhatWasUnknownAtTheBeginningHasALeverArmInTheMap) {
+TEST(MapSegments, InitialUncertaintyHasALeverArmInTheMap) {
   MapSegments segments;
   segments.begin(reckoned_at({}, 0.1, 0.2));
   GaussianState now;

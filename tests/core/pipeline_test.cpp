@@ -123,7 +123,7 @@ TEST(Pipeline, StretchesOfStagesAreInOrderAndAddUp) {
     for (std::size_t stage = 0; stage < sums_ms.size(); ++stage)
       EXPECT_DOUBLE_EQ(sums_ms[stage], report.stages.sums_ms()[stage]);
   }
-  // The second frame has told how fast the camera was, and both were processed again.
+  // The velocity was estimated from the second frame, and both frames were processed again.
   const auto predictions = [&](std::size_t frame) {
     const auto spans = reports[frame].stages.spans();
     return std::ranges::count(spans, Stage::predict, &StageSpan::stage);
@@ -171,9 +171,9 @@ TEST(Pipeline, BrightnessChangesAreAbsorbed) {
   EXPECT_LT(worst_error_m(darker, reports), 0.01);
 }
 
-TEST(Pipeline, BesideARepeatedColourTheVelocityCarriesOnOnce) {
-  // Two colour images are those of frame 4: depth of frame 5 is not asked, that of frame 6 is. A velocity of
-  // five frames is not exact; depth of an instant that is not the frame's would be off by as much again.
+TEST(Pipeline, WithARepeatedColourTheVelocityPredictsOnePose) {
+  // Two colour images repeat that of frame 4: depth of frame 5 is not used, that of frame 6 is. A velocity of
+  // five frames is not exact, and depth of another instant would have a similar error.
   SimulatedRun stalled = shared_run();
   for (const std::size_t k : {5U, 6U}) {
     stalled.frames[k].grey = stalled.frames[4].grey;
@@ -189,7 +189,7 @@ TEST(Pipeline, BesideARepeatedColourTheVelocityCarriesOnOnce) {
   for (const std::size_t k : {5U, 6U})
     EXPECT_EQ(reports[k].model_blocks, reports[4].model_blocks) << "not fused";
   EXPECT_LT(worst_error_m(stalled, reports), 0.02);
-  // Depth alone does not ask for colour, and an IMU knows the motion.
+  // Depth alone needs no colour, and an IMU measures the motion.
   Config by_depth = config_of("geometric-only");
   by_depth.terms.prior = config::Prior::constant_velocity;
   EXPECT_GT(track(stalled, by_depth)[5].patches_tracked, 0);
@@ -222,7 +222,7 @@ GreyImage darkened(GreyImage grey, double share) {
 TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
   for (const char* const variant : {"full", "no-imu"}) {
     SCOPED_TRACE(variant);
-    // What the recording gives without its first two frames.
+    // Result of the recording without its first two frames.
     SimulatedRun later = shared_run();
     later.frames.erase(later.frames.begin(), later.frames.begin() + 2);
     const auto expected = track(later, config_of(variant));
@@ -261,7 +261,7 @@ TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
                           [](const FrameReport& report) { return report.status == FrameStatus::tracked; }));
 }
 
-TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
+TEST(Pipeline, DoesNotStartAtAFrameWithoutDepthOrTexture) {
   SimulatedRun run = shared_run();
   std::fill(run.frames[0].depth_m.data.begin(), run.frames[0].depth_m.data.end(), 0.0F);
   std::fill(run.frames[1].grey.data.begin(), run.frames[1].grey.data.end(), std::uint8_t{128});
@@ -272,7 +272,7 @@ TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
   EXPECT_EQ(tracked(reports), kFrames - 3);
 }
 
-TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
+TEST(Pipeline, AnAbsurdInertialSampleLosesFramesButKeepsTheModel) {
   const SimulatedRun run = simulate(24);
   for (const double absurd : {4e9, 1e20, -3e38, 1e308}) {
     for (const auto member : {&ImuSample::angular_velocity_radps, &ImuSample::specific_force_mps2}) {
@@ -302,7 +302,7 @@ TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
   }
 }
 
-TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {
+TEST(Pipeline, MissingImuIsAnErrorWithItsTimes) {
   SimulatedRun truncated = shared_run();
   std::erase_if(truncated.imu,
                 [&](const ImuSample& s) { return s.timestamp_ns > truncated.frames[3].timestamp_ns; });

@@ -96,7 +96,7 @@ class TwoViews : public ::testing::Test {
   }
 };
 
-TEST_F(TwoViews, WhatIsSeenWhileTheCameraIsLostIsASegmentThatAKnownPlaceJoinsToTheMap) {
+TEST_F(TwoViews, AStoredPlaceJoinsTheSegmentOfALostCameraToTheMap) {
   append(run_.frames);
   const Workers workers(1);
   RecordingEstimator estimator(config_of("no-imu"), run_.rig, {}, workers, testing::replay_of(frames_));

@@ -34,7 +34,7 @@ void count_motion_compensation(KernelCounts& counts, const testing::BenchScene& 
         compensate_motion(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, workers, frame);
       },
       [&] {
-        check(testing::is_as_rendered(frame, scene), "the rolling shutter is undone");
+        check(testing::is_as_rendered(frame, scene), "the rolling shutter is compensated");
         return frame.grey.data.size();
       });
 }

@@ -49,7 +49,7 @@ struct RelocalisationConfig {
   /// A place is a candidate beside the best one with this share of its inliers (of the depth that agrees,
   /// where depth alone was used). Wrong doors of simulated corridors had 0.6 to 1.1 times the inliers of each
   /// other.
-  static constexpr double rival_support = 0.5;
+  static constexpr double ambiguous_support = 0.5;
   double lookalike_density = 1e-6;
   double min_odds = 100.0;
 

@@ -13,8 +13,8 @@ namespace fusebench::systems::bundlefusion {
 
 namespace {
 
-constexpr std::size_t kFramesOfChunk = 11;   // ten, and the one that it shares with the next
-constexpr std::size_t kFewestKeypoints = 5;  // fewer matches make no pair of frames
+constexpr std::size_t kFramesOfChunk = 11;   // ten, and one shared with the next chunk
+constexpr std::size_t kFewestKeypoints = 5;  // a pair of frames needs more matches
 
 config::DepthConfig keypoint_depth(config::DepthConfig depth, const config::BundlefusionConfig& config) {
   depth.min_m = config.keypoint_min_depth_m;
@@ -65,9 +65,9 @@ Result<health::FrameOutcome> BundlefusionSystem::process(const RgbdFrame& frame)
     outcome.reason = fmt::format("only {} keypoints with depth", keypoints);
   } else if (frames_.back().memberships.empty() ||
              !chunk_->T_first_camera()[frames_.back().memberships.back().place]) {
-    outcome.reason = "it matches no frame of its chunk";
+    outcome.reason = "the frame matches no frame of its chunk";
   } else {
-    outcome.reason = "its chunk begins with a frame whose place is not known";
+    outcome.reason = "its chunk begins with a frame without a pose";
   }
   was_lost_ = !first && !T_world_camera;
   outcome.T_world_camera = T_world_camera_;
@@ -80,7 +80,7 @@ View BundlefusionSystem::view_of(const RgbdFrame& frame) {
           make_depth_cloud(gated_m_, camera_)};
 }
 
-/// The first frame that can be matched.
+/// Processes the first frame with enough keypoints.
 std::optional<SE3> BundlefusionSystem::begin(View view) {
   if (view.keypoints.size() < kFewestKeypoints) return std::nullopt;
   T_world_first_ = T_world_start_;
@@ -88,7 +88,7 @@ std::optional<SE3> BundlefusionSystem::begin(View view) {
   return T_world_first_;
 }
 
-/// Its pose; nothing if it matches nothing, or what it matches has no place in the world.
+/// Pose of the frame; nothing if it matches no frame, or only frames without a pose.
 std::optional<SE3> BundlefusionSystem::follow(View view) {
   const std::size_t frame = frames_.size() - 1;
   frames_of_chunk_.push_back(frame);
@@ -115,8 +115,8 @@ void BundlefusionSystem::close_chunk() {
   chunks_.push_back(std::move(closed));
 }
 
-/// From the last frame that has a place in the chunk that was closed; from the newest one if none but the
-/// first has.
+/// Starts at the last placed frame of the closed chunk, or at the newest frame if only the first one was
+/// placed.
 void BundlefusionSystem::start_next_chunk() {
   const Poses& T_first_camera = chunks_.back().T_first_camera;
   std::size_t shared = chunk_->last_placed();
@@ -130,7 +130,7 @@ void BundlefusionSystem::start_next_chunk() {
   start_chunk(chunk_->take(shared), frames_of_chunk_[shared]);
 }
 
-/// Of its first frame, by the graph.
+/// Pose of the chunk's first frame, by the graph.
 std::optional<SE3> BundlefusionSystem::T_world_chunk(std::size_t chunk) const {
   const auto keyframe = chunks_[chunk].keyframe;
   return keyframe ? graph_.T_world_keyframe()[*keyframe] : std::nullopt;
@@ -153,7 +153,7 @@ Result<std::optional<Trajectory>> BundlefusionSystem::revise() {
   return final_trajectory;
 }
 
-/// By the latest chunk that gives one.
+/// Pose by the latest chunk that has one.
 std::optional<SE3> BundlefusionSystem::final_pose(const KnownFrame& frame) const {
   for (const Membership& membership : frame.memberships | std::views::reverse) {
     const auto T_world = T_world_chunk(membership.chunk);
@@ -163,7 +163,7 @@ std::optional<SE3> BundlefusionSystem::final_pose(const KnownFrame& frame) const
   return std::nullopt;
 }
 
-/// If it has a final pose.
+/// Fuses the frame if it has a final pose.
 Result<void> BundlefusionSystem::fuse(const RgbdFrame& frame, const Trajectory& final_trajectory) {
   const auto pose =
       std::ranges::lower_bound(final_trajectory, frame.timestamp_ns, {}, &StampedPose::timestamp_ns);

@@ -1,9 +1,9 @@
-// BundleFusion's method on the processor (Dai et al., "BundleFusion: Real-Time Globally Consistent 3D
-// Reconstruction Using On-the-Fly Surface Reintegration", 2017): keypoints and depth of ten frames make a
-// chunk, chunks are matched with all others, and all poses are adjusted together.
+// BundleFusion's method on the CPU (Dai et al., "BundleFusion: Real-Time Globally Consistent 3D
+// Reconstruction Using On-the-Fly Surface Reintegration", 2017). Keypoints and depth of ten frames form a
+// chunk, chunks are matched with all others, and all poses are optimised together.
 //
-// There is no motion model and no tracking against the model: a frame that matches nothing is lost. Instead
-// of reintegrating the surface whenever poses change, frames are fused once, at their final poses.
+// There is neither a motion model nor tracking against the model: a frame without matches is lost. Frames are
+// fused once, at their final poses, instead of reintegrating the surface after each change.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,23 @@ namespace fusebench::systems::bundlefusion {
 
 class BundlefusionSystem final : public System {
  public:
-  /// workers must outlive it. The threads of OpenCV are limited to as many. replay: needed for revise().
+  /// workers must outlive the system. OpenCV is limited to the same number of threads. replay: required for
+  /// revise().
   BundlefusionSystem(const config::BundlefusionConfig& config, const config::DepthConfig& depth,
                      const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers,
                      Replay replay);
 
-  /// The world is the camera of the first frame that has keypoints. The pose is that of the chunk's first
-  /// frame by all chunks before, times that within the chunk by the frames so far.
+  /// The world is the camera frame of the first frame with keypoints. The pose is T_world_chunk (all earlier
+  /// chunks) times the pose in the chunk (frames so far).
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
-  /// Poses after the last adjustment, of the frames whose chunk has a place, which are fused; nothing if
-  /// there are none. Errors: run_failed (a full model), those of the replay.
+  /// Final poses of the frames whose chunk has a pose; these frames are fused. Nothing if there are none.
+  /// Errors: run_failed (a full model), those of the replay.
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override;
-  /// What revise() has fused.
+  /// The surface fused by revise().
   [[nodiscard]] Surface take_surface() override;
 
  private:
-  /// A frame's place in a chunk; a frame that two chunks share has two.
+  /// Position of a frame in a chunk; a frame shared by two chunks has two.
   struct Membership {
     std::size_t chunk = 0;
     std::size_t place = 0;
@@ -48,7 +49,7 @@ class BundlefusionSystem final : public System {
   };
   struct ClosedChunk {
     Poses T_first_camera;
-    std::optional<std::size_t> keyframe;  ///< in the graph; nothing if the chunk contradicts itself
+    std::optional<std::size_t> keyframe;  ///< index in the graph; nothing if the chunk is inconsistent
   };
 
   [[nodiscard]] View view_of(const RgbdFrame& frame);
@@ -70,10 +71,10 @@ class BundlefusionSystem final : public System {
   tsdf::TsdfVolume model_;
   std::vector<KnownFrame> frames_;
   std::vector<ClosedChunk> chunks_;
-  std::optional<Chunk> chunk_;                ///< the one that frames are added to
+  std::optional<Chunk> chunk_;                ///< chunk under construction
   std::vector<std::size_t> frames_of_chunk_;  ///< indices of its frames
-  std::optional<SE3> T_world_first_;          ///< of its first frame; nothing if that is not known
-  SE3 T_world_start_;                         ///< of the first frame that can be matched
+  std::optional<SE3> T_world_first_;          ///< of its first frame; nothing if unknown
+  SE3 T_world_start_;                         ///< of the first frame with enough keypoints
   SE3 T_world_camera_;                        ///< of the last frame that was not lost
   bool was_lost_ = false;
   Replay replay_;

@@ -11,7 +11,7 @@ namespace fusebench::systems::bundlefusion {
 namespace {
 
 constexpr int kChunkSteps = 2;
-constexpr double kMaxResidual_m = 0.02;  // of matches, but for a share of
+constexpr double kMaxResidual_m = 0.02;  // largest residual of a match, with a share of exceptions
 constexpr double kMaxShareBeyond = 0.05;
 constexpr DenseLimits kOfADoubtfulChunk{0.05, 0.001};
 
@@ -32,12 +32,12 @@ bool Chunk::add(View view) {
   });
   for (std::size_t k = 0; k < added; ++k) {
     if (!found[k]) continue;
-    T_first_camera_[added] = *T_first_camera_[k] * found[k]->T_a_b;  // by the latest frame of those
+    T_first_camera_[added] = *T_first_camera_[k] * found[k]->T_a_b;  // by the latest such frame
     pairs_.push_back({k, added, std::move(*found[k])});
   }
   if (!T_first_camera_[added]) return false;
   const AdjustmentTerms terms{pairs_, {}, {config_.sparse_weight, 0, 0}};
-  // Singular equations leave the poses that the pairs gave.
+  // If the equations are singular, the poses of the pairs remain.
   static_cast<void>(adjust_poses(T_first_camera_, terms, kChunkSteps, workers_));
   return true;
 }

@@ -1,5 +1,5 @@
-// A chunk: eleven frames in a row, the last one shared with the next chunk, each placed in the camera of the
-// first one (Dai et al. 2017, Sec. 4.3: local intra-chunk pose optimization).
+// A chunk: eleven consecutive frames, the last one shared with the next chunk, with poses in the camera frame
+// of the first (Dai et al. 2017, Sec. 4.3: local intra-chunk pose optimization).
 #pragma once
 
 #include <vector>
@@ -11,26 +11,26 @@ namespace fusebench::systems::bundlefusion {
 
 class Chunk {
  public:
-  /// The first frame; workers must outlive the chunk.
+  /// Starts with the first frame; workers must outlive the chunk.
   Chunk(View first, const config::BundlefusionConfig& config, const Workers& workers);
 
-  /// Adds the next frame, and places it if it matches one that is placed. Says whether it did.
+  /// Adds the next frame and places it if it matches a placed one. True if it was placed.
   bool add(View view);
 
   [[nodiscard]] std::size_t size() const { return views_.size(); }
-  /// Of its frames; nothing where a frame matched none.
+  /// Poses of the frames; nothing for unmatched frames.
   [[nodiscard]] const Poses& T_first_camera() const { return T_first_camera_; }
-  /// The last frame that was placed.
+  /// Index of the last placed frame.
   [[nodiscard]] std::size_t last_placed() const;
 
-  /// Adjusts all poses, with depth. False if what it has is no chunk: a single frame, or matches that
+  /// Optimises all poses with depth. False if the chunk is invalid: a single frame, or matches that
   /// contradict each other or the depth.
   [[nodiscard]] bool close();
 
-  /// The chunk in the camera of its first frame: the keypoints that were matched within it, each track once.
+  /// The chunk as one view in the camera of its first frame: its matched keypoints, one for each track.
   [[nodiscard]] View merged(const PinholeCamera& camera) const;
 
-  /// The first frame of the next chunk; the chunk is of no use afterwards.
+  /// Moves out a view as the first frame of the next chunk. The chunk is unusable afterwards.
   [[nodiscard]] View take(std::size_t frame) { return std::move(views_[frame]); }
 
  private:

@@ -4,7 +4,7 @@ namespace fusebench::systems::bundlefusion {
 
 namespace {
 
-/// What points of b show in the image of a.
+/// Tests the points of b in the image of a.
 bool fits_into(const DepthCloud& a, const DepthCloud& b, const SE3& T_a_b, const DenseLimits& limits) {
   std::size_t matched = 0;
   std::size_t compared = 0;

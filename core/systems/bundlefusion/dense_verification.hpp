@@ -1,5 +1,5 @@
-// Whether two depth images fit together at a motion, each seen from the other's camera
-// (Dai et al. 2017, Sec. 4.2: dense two-sided geometric and photometric verification; here by depth alone).
+// Tests whether two depth images are consistent at a relative pose, in both directions (Dai et al. 2017, Sec.
+// 4.2: dense two-sided geometric and photometric verification; here by depth alone).
 #pragma once
 
 #include "core/systems/bundlefusion/depth_cloud.hpp"
@@ -7,13 +7,13 @@
 namespace fusebench::systems::bundlefusion {
 
 struct DenseLimits {
-  double max_error_m = 0;        ///< of the mean distance of what should coincide
-  double min_overlap_share = 0;  ///< of the cells, those that coincide
+  double max_error_m = 0;        ///< limit of the mean distance of corresponding points
+  double min_overlap_share = 0;  ///< least share of corresponding cells
 };
 
-/// True if, in both directions, enough cells find a surface where they fall in the other image, and their
-/// mean distance is small. A point in front of the surface that the other camera saw counts with its
-/// distance: it would have been seen.
+/// True if in both directions enough cells have a corresponding surface in the other image, with a small mean
+/// distance. A point in front of the other surface counts with its distance, since it would have been
+/// visible.
 [[nodiscard]] bool fit_together(const DepthCloud& a, const DepthCloud& b, const SE3& T_a_b,
                                 const DenseLimits& limits);
 

@@ -9,11 +9,11 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kColumns = 80;             // of an image of 640 pixels, whose cells are 8 pixels wide
-constexpr float kSameSurface_m = 0.05F;  // within a cell, and along z between those that a normal is made of
+constexpr float kSameSurface_m = 0.05F;  // within a cell, and along z between the points of a normal
 constexpr float kMaxDistance_m = 0.15F;
 constexpr float kMinNormalProduct = 0.97F;
 
-/// The camera of the small image: the centre of a cell of n pixels lies (n - 1) / 2 of them into it.
+/// Camera of the small image: the centre of a cell of n pixels is (n - 1) / 2 pixels from its first pixel.
 PinholeCamera camera_of_cells(const PinholeCamera& camera, int cell_px) {
   const double middle_px = 0.5 * (cell_px - 1);
   return {
@@ -21,7 +21,7 @@ PinholeCamera camera_of_cells(const PinholeCamera& camera, int cell_px) {
       camera.fy_px / cell_px,    (camera.cx_px - middle_px) / cell_px, (camera.cy_px - middle_px) / cell_px};
 }
 
-/// Mean depth of the surface in the middle of a cell; 0 if there is none.
+/// Mean depth of the surface at the centre of a cell; 0 if there is none.
 float cell_depth_m(const DepthImage& depth_m, int left_px, int top_px, int cell_px) {
   const float middle_m = depth_m(left_px + cell_px / 2, top_px + cell_px / 2);
   if (!(middle_m > 0)) return 0;
@@ -38,7 +38,7 @@ float cell_depth_m(const DepthImage& depth_m, int left_px, int top_px, int cell_
   return sum_m / count;
 }
 
-/// Zero if a neighbour is missing or apart.
+/// Zero if a neighbour is missing or too distant.
 Vector3f normal_at(const Image<Vector3f>& points, int x, int y) {
   const Vector3f& middle = points(x, y);
   const Vector3f &left = points(x - 1, y), &right = points(x + 1, y);
@@ -56,7 +56,7 @@ Vector3f normal_at(const Image<Vector3f>& points, int x, int y) {
 std::optional<std::size_t> DepthCloud::cell_at(const Vector3f& point_camera) const {
   if (!(point_camera.z() > 0)) return std::nullopt;
   const Vector2d pixel = camera.project(point_camera.cast<double>());
-  // Compared as they are: a point near the plane of the camera projects beyond any integer.
+  // Compared in floating point: a point near the plane of the camera projects beyond the range of integers.
   if (!(pixel.x() > -0.5 && pixel.y() > -0.5 && pixel.x() < points.width - 0.5 &&
         pixel.y() < points.height - 0.5))
     return std::nullopt;

@@ -1,4 +1,4 @@
-// A frame's depth at a small size: points and normals of a grid of some 80x60 cells.
+// Depth of a frame at a small size: points and normals on a grid of about 80x60 cells.
 #pragma once
 
 #include <cmath>
@@ -9,22 +9,22 @@
 
 namespace fusebench::systems::bundlefusion {
 
-/// Points and normals in the camera's axes (metres, unit); zero where there is none.
+/// Points and normals in camera axes (metres, unit); zero if missing.
 struct DepthCloud {
   PinholeCamera camera;
   Image<Eigen::Vector3f> points;
-  Image<Eigen::Vector3f> normals;  ///< towards the camera; only where there is a point
+  Image<Eigen::Vector3f> normals;  ///< towards the camera; zero without a point
 
-  /// Index of the cell that a point in front of this camera (its axes) falls into, if that has a normal.
+  /// Index of the cell at the projection of a point (camera axes, z > 0), if the cell has a normal.
   [[nodiscard]] std::optional<std::size_t> cell_at(const Eigen::Vector3f& point_camera) const;
 };
 
-/// A cell has the mean of those of its depths that are within 5 cm of the one in its middle; its normal is
-/// that of the cells around it.
+/// Each cell has the mean of its depths within 5 cm of the central one. Its normal is from the surrounding
+/// cells.
 [[nodiscard]] DepthCloud make_depth_cloud(const DepthImage& depth_m, const PinholeCamera& camera);
 
-/// Calls back for every point of b that has a normal and falls into a cell of a with one: with the cell's
-/// index, and with the point and its normal in the axes of a.
+/// For each point of b with a normal that projects to a cell of a with a normal, calls the callback with the
+/// index of the cell, the point and its normal, in the axes of a.
 template <class Callback>
 void for_each_overlap(const DepthCloud& a, const DepthCloud& b, const SE3& T_a_b, const Callback& callback) {
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
@@ -36,8 +36,8 @@ void for_each_overlap(const DepthCloud& a, const DepthCloud& b, const SE3& T_a_b
   }
 }
 
-/// Whether two points with their normals, in the same axes, may be of one surface: within 15 cm, and turned
-/// by less than 14 degrees (Dai et al. 2017, Sec. 4.2).
+/// True if two points with normals, in the same axes, may belong to one surface: distance below 15 cm, angle
+/// below 14 degrees (Dai et al. 2017, Sec. 4.2).
 [[nodiscard]] bool are_of_one_surface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
                                       const Eigen::Vector3f& other_point,
                                       const Eigen::Vector3f& other_normal);

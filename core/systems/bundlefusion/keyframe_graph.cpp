@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kGraphSteps = 3;
 
-/// Largest residual of the pair's matches along an axis of the world (metres).
+/// Largest residual of the matches of a pair along a world axis (metres).
 double largest_residual_m(const FramePair& pair, const Poses& poses) {
   double largest_m = 0;
   for (const auto& [point_a, point_b] : pair.rigid.points) {
@@ -37,8 +37,8 @@ void KeyframeGraph::finish() {
   const auto placed = [&] {
     return std::ranges::count_if(T_world_keyframe_, [](const auto& pose) { return pose.has_value(); });
   };
-  // While there are more of them: one that is placed may take the place from another that contradicts it,
-  // which would take it back the next time.
+  // Repeats while the number of placed keyframes grows. A newly placed one may displace another that
+  // contradicts it, so an unbounded loop could alternate.
   for (auto before = placed() - 1; before < placed();) {
     before = placed();
     for (std::size_t k = 0; k < keyframes_.size(); ++k) {
@@ -73,7 +73,7 @@ bool KeyframeGraph::place(std::size_t keyframe, const std::optional<SE3>& T_worl
   return T_world_keyframe_[keyframe].has_value();
 }
 
-/// In turn, so that none waits for the others.
+/// Retries one unplaced keyframe in turn.
 void KeyframeGraph::retry_one() {
   for (std::size_t tried = 0; tried < keyframes_.size(); ++tried) {
     retried_ = (retried_ + 1) % keyframes_.size();
@@ -90,7 +90,7 @@ void KeyframeGraph::adjust() {
   } while (remove_worst_pair());
 }
 
-/// Whether there was one that contradicts the others.
+/// Removes the worst inconsistent pair. True if there was one.
 bool KeyframeGraph::remove_worst_pair() {
   std::size_t worst = 0;
   double worst_m = 0;
@@ -106,7 +106,7 @@ bool KeyframeGraph::remove_worst_pair() {
   return true;
 }
 
-/// Keyframes that no chain of pairs connects with the first one lose their place, and their pairs.
+/// Removes the poses and pairs of keyframes that are not connected with the first one.
 void KeyframeGraph::drop_disconnected() {
   std::vector<bool> reached(keyframes_.size(), false);
   reached[0] = true;

@@ -1,5 +1,5 @@
-// Where chunks are in the world: one keyframe a chunk, matched with all others (Dai et al. 2017, Sec. 4.3:
-// global inter-chunk pose optimization).
+// Poses of chunks in the world: one keyframe for each chunk, matched with all others (Dai et al. 2017, Sec.
+// 4.3: global inter-chunk pose optimization).
 #pragma once
 
 #include <cstddef>
@@ -18,15 +18,15 @@ class KeyframeGraph {
   KeyframeGraph(const config::BundlefusionConfig& config, const Workers& workers)
       : config_(config), workers_(workers) {}
 
-  /// Adds a keyframe, places it if it matches a placed one (the first one always), and adjusts all; then
-  /// tries one of those again that have no place. The guess, if there is one, is where adjusting starts.
-  /// Returns its index.
+  /// Adds a keyframe, places it if it matches a placed one (the first one always), and optimises all poses;
+  /// then retries one unplaced keyframe. T_world_guess: optional start of the optimisation. Returns its
+  /// index.
   std::size_t add(View keyframe, const std::optional<SE3>& T_world_guess);
 
-  /// The end: tries those without a place until none finds one, and adjusts all with depth.
+  /// Retries unplaced keyframes until none can be placed, and optimises all poses with depth.
   void finish();
 
-  /// Nothing for keyframes without a place.
+  /// Poses; nothing for unplaced keyframes.
   [[nodiscard]] const Poses& T_world_keyframe() const { return T_world_keyframe_; }
   [[nodiscard]] std::span<const FramePair> pairs() const { return pairs_; }
 
@@ -42,7 +42,7 @@ class KeyframeGraph {
   std::vector<View> keyframes_;
   std::vector<FramePair> pairs_;
   Poses T_world_keyframe_;
-  std::size_t retried_ = 0;  ///< the keyframe that was tried again last
+  std::size_t retried_ = 0;  ///< keyframe of the last retry
 };
 
 }  // namespace fusebench::systems::bundlefusion

@@ -9,15 +9,15 @@ namespace fusebench::systems::bundlefusion {
 
 namespace {
 
-constexpr int kOctaves = 4;  // from the one of the image's own size on
-// The library searches an image of twice the size, where the centre of pixel x lies at 2 x + 1/2, and halves
-// what it finds there.
+constexpr int kOctaves = 4;  // from the octave of the original size on
+// The library searches an image of twice the size, where the centre of pixel x is at 2 x + 1/2, and halves
+// the coordinates of the result.
 constexpr float kShift_px = 0.25F;
 
-/// The library packs the octave into the lowest byte, as a signed number; -1 is the image of twice the size.
+/// The library stores the octave in the lowest byte as a signed number; -1 is the image of twice the size.
 int octave_of(const cv::KeyPoint& key) { return static_cast<std::int8_t>(key.octave & 0xFF); }
 
-/// The standard deviation of the Gaussian; the library gives twice that.
+/// Standard deviation of the Gaussian; the library returns twice that.
 double scale_px(const cv::KeyPoint& key) { return 0.5 * static_cast<double>(key.size); }
 
 /// Depth at the nearest pixel.
@@ -27,8 +27,7 @@ double depth_at_m(const cv::KeyPoint& key, const DepthImage& depth_m) {
   return depth_m.contains(x, y) ? static_cast<double>(depth_m(x, y)) : 0.0;
 }
 
-/// The strongest first. What is equally strong has an order of its own, so that the library's does not
-/// matter.
+/// Strongest first. A total order for equal strengths, so that the order of the library has no effect.
 void sort_by_strength(std::vector<cv::KeyPoint>& keys) {
   std::ranges::sort(keys, [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     return std::make_tuple(-a.response, a.pt.y, a.pt.x, a.size, a.angle) <
@@ -51,9 +50,9 @@ SiftDescriptor descriptor_of(const std::uint8_t* values) {
 
 Keypoints find_keypoints(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
                          int max_count, double min_scale_px) {
-  // OpenCV has no read-only view; nothing writes through this one.
+  // OpenCV has no read-only view; the data is never written.
   const cv::Mat view(grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data()));
-  // Lowe's own settings, which are the library's: three layers an octave, contrast, edges and first scale.
+  // Lowe's settings, the defaults of the library: three layers in an octave, contrast, edges and first scale.
   const auto sift = cv::SIFT::create(0, 3, 0.04, 10, 1.6, CV_8U);
   std::vector<cv::KeyPoint> keys;
   sift->detect(view, keys);

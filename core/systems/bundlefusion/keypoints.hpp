@@ -1,4 +1,4 @@
-// Keypoints of a frame with their points in space: SIFT (Lowe 2004) by OpenCV, with the depth behind each.
+// Keypoints of a frame as 3D points: SIFT (Lowe 2004) by OpenCV, with depth.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ struct Keypoint {
 };
 using Keypoints = std::vector<Keypoint>;
 
-/// The strongest keypoints, at most max_count, of a scale (standard deviation of the Gaussian) of at least
-/// min_scale_px, at pixels with depth (> 0; the size of the grey image). In order of their strength.
-/// Dai et al. 2017, Sec. 4.1. Errors: none; an image with nothing to see has no keypoints.
+/// The strongest keypoints, at most max_count, in the order of their strength: scale (standard deviation of
+/// the Gaussian) of at least min_scale_px, at pixels with depth (> 0; same size as the grey image). Dai et
+/// al. 2017, Sec. 4.1. Errors: none; an image without texture has no keypoints.
 [[nodiscard]] Keypoints find_keypoints(const GreyImage& grey, const DepthImage& depth_m,
                                        const PinholeCamera& camera, int max_count, double min_scale_px);
 

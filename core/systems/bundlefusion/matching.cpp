@@ -9,10 +9,10 @@ namespace fusebench::systems::bundlefusion {
 namespace {
 
 constexpr double kMaxDistance = 0.7;
-constexpr double kMaxRatio = 0.8;  // of the distances to the nearest and the second nearest
+constexpr double kMaxRatio = 0.8;  // largest ratio of the nearest to the second nearest distance
 constexpr std::size_t kMaxMatches = 128;
 
-/// Cosines of the angles to the two nearest descriptors; the greater, the nearer.
+/// Cosines of the angles to the two nearest descriptors; larger is nearer.
 struct Nearest {
   std::size_t index = 0;
   double first = -1;
@@ -36,7 +36,7 @@ double cosine_of(const SiftDescriptor& a, const SiftDescriptor& b) {
   return product * a.inverse_norm * b.inverse_norm;
 }
 
-/// Of two vectors of unit length.
+/// Distance of two unit vectors by their cosine.
 double distance_of(double cosine) { return std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine)); }
 
 }  // namespace

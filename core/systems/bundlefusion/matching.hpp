@@ -1,4 +1,4 @@
-// Keypoints of two frames that look alike.
+// Matching of the keypoints of two frames.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace fusebench::systems::bundlefusion {
 
-/// Indices of two keypoints, one of each frame.
+/// Indices of two matching keypoints.
 struct KeypointMatch {
   std::size_t a = 0;
   std::size_t b = 0;
-  double distance = 0;  ///< of the descriptors, scaled to unit length: 0 to sqrt(2)
+  double distance = 0;  ///< of the unit-length descriptors: 0 to sqrt(2)
 };
 
-/// Every keypoint of a against every one of b: those that are each other's nearest, nearer than 0.7, and
-/// nearer than 0.8 of the second nearest (Lowe 2004). The best 128, the nearest first (Dai et al. 2017).
+/// Mutual nearest neighbours of a and b with a distance below 0.7 and below 0.8 of the second nearest (Lowe
+/// 2004). The best 128, nearest first (Dai et al. 2017).
 [[nodiscard]] std::vector<KeypointMatch> match_keypoints(const Keypoints& a, const Keypoints& b);
 
 }  // namespace fusebench::systems::bundlefusion

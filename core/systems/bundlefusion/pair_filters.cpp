@@ -17,7 +17,7 @@ constexpr std::size_t kFewestToFit = 3;
 constexpr double kMaxCondition = 100;
 constexpr double kMinArea_m2 = 0.032;
 
-/// How points scatter: variances (square metres) along principal axes, the least first.
+/// Scatter of points: variances (square metres) along principal axes, ascending.
 struct Scatter {
   Vector3d mean = Vector3d::Zero();
   Vector3d variances_m2 = Vector3d::Zero();
@@ -38,7 +38,7 @@ Scatter scatter_of(std::span<const Vector3d> points) {
   return scatter;
 }
 
-/// The points of one side of all pairs.
+/// The points of one frame of all pairs.
 std::vector<Vector3d> side_of(std::span<const PointPair> points, Vector3d PointPair::*side) {
   std::vector<Vector3d> result;
   result.reserve(points.size());
@@ -46,7 +46,8 @@ std::vector<Vector3d> side_of(std::span<const PointPair> points, Vector3d PointP
   return result;
 }
 
-/// Points in a plane determine a motion, points in a line do not: the two greatest variances decide.
+/// True if the two largest variances show collinear points, which do not determine a motion. Coplanar points
+/// do.
 bool is_near_a_line(std::span<const Vector3d> points) {
   const Vector3d variances_m2 = scatter_of(points).variances_m2;
   return variances_m2(2) >= kMaxCondition * variances_m2(1);
@@ -60,7 +61,7 @@ bool is_near_one(const KeypointMatch& match, std::span<const KeypointMatch> take
   });
 }
 
-/// Fits the motion, and drops the worst pair until all agree with it or too few are left.
+/// Fits the motion and removes the worst pair until all agree or too few remain.
 void drop_those_that_disagree(RigidMatches& rigid) {
   while (rigid.points.size() >= kFewestToFit) {
     rigid.T_a_b = rigid_fit(rigid.points);

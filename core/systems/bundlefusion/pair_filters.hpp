@@ -1,5 +1,5 @@
-// Which matches of two frames agree on one rigid motion, and whether they determine it
-// (Dai et al. 2017, Sec. 4.2: key point correspondence filter and surface area filter).
+// Selects the matches of two frames that agree on one rigid motion and determine it (Dai et al. 2017, Sec.
+// 4.2: key point correspondence filter and surface area filter).
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace fusebench::systems::bundlefusion {
 
-/// One place seen by two cameras, in the axes of each (metres).
+/// A point in the axes of two cameras (metres).
 struct PointPair {
   Vector3d point_a = Vector3d::Zero();
   Vector3d point_b = Vector3d::Zero();
@@ -20,23 +20,24 @@ struct PointPair {
 /// Matches that agree on a motion.
 struct RigidMatches {
   std::vector<KeypointMatch> matches;
-  std::vector<PointPair> points;  ///< one a match
+  std::vector<PointPair> points;  ///< one for each match
   SE3 T_a_b;
 };
 
 /// The least-squares motion T_a_b of at least three pairs (Kabsch 1976, Umeyama 1991).
 [[nodiscard]] SE3 rigid_fit(std::span<const PointPair> points);
 
-/// Takes matches in their order, none within 5 px of one that is taken, up to 25 of them; after each the
-/// motion is fitted again, and the worst matches go until all are within 2 cm of it. Nothing if fewer than
-/// five remain, or if they lie so near a line that they leave a rotation open.
+/// Adds matches in their order, at least 5 px from those already taken, up to 25. After each, fits the motion
+/// and removes the worst matches until all are within 2 cm. Nothing if fewer than five remain, or if they are
+/// nearly collinear.
 [[nodiscard]] std::optional<RigidMatches> filter_by_motion(std::span<const KeypointMatch> matches,
                                                            const Keypoints& a, const Keypoints& b);
 
-/// The area (square metres) of the box around the points in their plane: along their two principal axes.
+/// Area (square metres) of the bounding box of the points in their plane, along their two principal axes.
 [[nodiscard]] double box_area_m2(std::span<const Vector3d> points);
 
-/// Whether the points cover 0.032 square metres or more in both frames: less determines a motion badly.
+/// True if the points cover at least 0.032 square metres in both frames; a smaller area determines the motion
+/// badly.
 [[nodiscard]] bool covers_enough_area(std::span<const PointPair> points);
 
 }  // namespace fusebench::systems::bundlefusion

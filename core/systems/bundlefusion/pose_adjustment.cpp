@@ -13,18 +13,18 @@ namespace {
 
 constexpr double kMaxDenseAngle_rad = radians(30);
 constexpr double kMinDenseShare = 1.0 / 6.0;  // 800 of 80x60 cells
-constexpr double kMaxLogMatches = 9;          // a pair of n dense matches weighs 1 / min(ln n, 9)
+constexpr double kMaxLogMatches = 9;  // limit of ln n: the weight of n dense matches is 1 / min(ln n, 9)
 
 using Solver = Eigen::SimplicialLDLT<SparseMatrixd, Eigen::Lower, Eigen::AMDOrdering<SparseIndex>>;
 
-/// Two frames, and their matches; nullptr if depth alone is compared.
+/// Two frames and their matches; nullptr if only depth is compared.
 struct Term {
   std::size_t a = 0;
   std::size_t b = 0;
   const RigidMatches* rigid = nullptr;
 };
 
-/// The part of two poses in the normal equations.
+/// Part of two poses in the normal equations.
 struct PairEquations {
   Matrix6d aa = Matrix6d::Zero();
   Matrix6d ab = Matrix6d::Zero();
@@ -62,11 +62,11 @@ void add_planes(const SE3& T_world_a, const SE3& T_world_b, const DepthCloud& a,
   equations.descent_b += motion.by_pose_b.transpose() * descent;
 }
 
-/// One Gauss-Newton problem: its terms, and where each pose is among the unknowns.
+/// A Gauss-Newton problem: its terms and the index of each pose among the unknowns.
 class Adjustment {
  public:
   Adjustment(const Poses& poses, const AdjustmentTerms& terms) : terms_(terms), block_(poses.size(), -1) {
-    int block = -1;  // of the first pose, which is no unknown
+    int block = -1;  // -1: the first pose, which is fixed
     for (std::size_t k = 0; k < poses.size(); ++k) {
       if (poses[k]) block_[k] = block++;
     }
@@ -128,7 +128,7 @@ class Adjustment {
     return equations;
   }
 
-  /// What belongs to the first pose (-1) is left out.
+  /// Skips blocks of the first pose (-1).
   static void add_block(int row, int column, const Matrix6d& block,
                         std::vector<Eigen::Triplet<double, SparseIndex>>& entries) {
     if (row < 0 || column < 0) return;
@@ -138,7 +138,7 @@ class Adjustment {
   }
 
   const AdjustmentTerms& terms_;
-  std::vector<int> block_;  ///< of each pose; -1: the first one, or none
+  std::vector<int> block_;  ///< of each pose; -1: fixed or none
   int blocks_ = 0;
   std::vector<Term> list_;
 };

@@ -1,4 +1,4 @@
-// Poses of frames by all their matches at once, sparse and dense (Dai et al. 2017, Sec. 4.3).
+// Joint optimisation of poses by sparse and dense matches (Dai et al. 2017, Sec. 4.3).
 #pragma once
 
 #include <optional>
@@ -11,27 +11,26 @@
 
 namespace fusebench::systems::bundlefusion {
 
-/// Poses of frames by their indices, camera to world; those that have none take no part.
+/// T_world_camera by frame index; frames without a pose are ignored.
 using Poses = std::vector<std::optional<SE3>>;
 
 struct AdjustmentWeights {
-  double sparse = 1;       ///< of squared distances of matched points
-  double dense = 0;        ///< of squared distances of points from planes; 0: depth is not compared
-  double dense_far_m = 0;  ///< where these weigh nothing (plane_sums)
+  double sparse = 1;       ///< weight of squared distances of matched points
+  double dense = 0;        ///< weight of squared point-to-plane distances; 0: depth is not used
+  double dense_far_m = 0;  ///< distance of zero weight (plane_sums)
 };
 
-/// The matches and depth images that poses are adjusted by; clouds[k] is of frame k, and used if dense is
-/// not 0.
+/// Matches and depth images for the optimisation; clouds[k] belongs to frame k and is used if dense is not 0.
 struct AdjustmentTerms {
   std::span<const FramePair> pairs;
   std::span<const DepthCloud* const> clouds;
   AdjustmentWeights weights;
 };
 
-/// Gauss-Newton steps from the given poses, the first of which stays; each step solves its equations exactly.
-/// All frames that have a pose must hang together by their pairs. Depth is compared for all frames whose
-/// cameras are turned by less than 30 degrees against each other and of whose cells a sixth coincides. False
-/// if the equations are singular; the poses are then those before.
+/// Gauss-Newton steps from the given poses, with the first pose fixed and an exact solution of the equations
+/// in each step. All frames with a pose must be connected by pairs. Depth is compared for pairs of frames
+/// that are rotated by less than 30 degrees and of whose cells a sixth corresponds. False if the equations
+/// are singular; the poses are then unchanged.
 [[nodiscard]] bool adjust_poses(Poses& T_world_camera, const AdjustmentTerms& terms, int steps,
                                 const Workers& workers);
 

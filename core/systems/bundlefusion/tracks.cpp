@@ -15,9 +15,9 @@ struct PointSum {
 
 Keypoints merge_tracks(std::span<const Keypoints* const> keypoints, std::span<const FramePair> pairs,
                        const Poses& T_first_camera, const PinholeCamera& camera) {
-  std::vector<std::size_t> begin{0};  // of each frame, in a numbering of all keypoints
+  std::vector<std::size_t> begin{0};  // first index of each frame in a numbering of all keypoints
   for (const Keypoints* const of_frame : keypoints) begin.push_back(begin.back() + of_frame->size());
-  DisjointSets tracks(begin.back());  // of keypoints
+  DisjointSets tracks(begin.back());  // over all keypoints
   for (const FramePair& pair : pairs) {
     for (const KeypointMatch& match : pair.rigid.matches)
       tracks.join(begin[pair.a] + match.a, begin[pair.b] + match.b);

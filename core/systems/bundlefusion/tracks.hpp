@@ -1,4 +1,4 @@
-// Keypoints that were matched through a chunk, each once (Dai et al. 2017, Sec. 4.3: per-chunk keyframes).
+// Merges the matched keypoints of a chunk to tracks (Dai et al. 2017, Sec. 4.3: per-chunk keyframes).
 #pragma once
 
 #include <span>
@@ -7,9 +7,8 @@
 
 namespace fusebench::systems::bundlefusion {
 
-/// Keypoints of the frames that are connected by matches, as keypoints of the first camera: the mean of their
-/// points, and the descriptor of the earliest. In the order of those. Tracks behind the first camera are left
-/// out.
+/// Tracks of connected frames as keypoints of the first camera, ordered by their earliest keypoints: mean of
+/// the points, descriptor of the earliest. Skips tracks behind the first camera.
 [[nodiscard]] Keypoints merge_tracks(std::span<const Keypoints* const> keypoints,
                                      std::span<const FramePair> pairs, const Poses& T_first_camera,
                                      const PinholeCamera& camera);

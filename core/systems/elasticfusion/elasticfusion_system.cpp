@@ -12,9 +12,10 @@ namespace fusebench::systems::elasticfusion {
 
 namespace {
 
-constexpr double kDense = 0.75;  // views that see less are filled with the frame before
+constexpr double kDense = 0.75;  // sparser views are filled with the previous frame
 constexpr int kRotationLevel = 2;
-// A frame fits badly beyond these, for an image of 640x480, and the camera is lost after so many.
+// Limits of a bad fit for an image of 640x480, and the number of consecutive bad frames until the camera is
+// lost.
 constexpr double kMostError_m = 1e-4;
 constexpr double kMostVariance = 1e-4;
 constexpr int kBadFramesUntilLost = 10;
@@ -76,13 +77,13 @@ Result<health::FrameOutcome> ElasticfusionSystem::process(const RgbdFrame& frame
   return outcome;
 }
 
-/// By the inertial samples, if they are used.
+/// Predicts by the inertial samples, if they are used.
 Result<void> ElasticfusionSystem::predict(std::int64_t capture_ns) {
   if (!inertial_) return {};
   return frames_ == 0 ? inertial_->start(capture_ns) : inertial_->predict(capture_ns);
 }
 
-/// Tracks the frame or, if the camera is lost, looks for its place; whether it can be fused.
+/// Tracks the frame or, if the camera is lost, relocalises it. Returns whether it can be fused.
 ElasticfusionSystem::Quality ElasticfusionSystem::follow(const surfels::LiveFrame& live,
                                                          const tracking::LivePyramid& levels,
                                                          health::FrameOutcome& outcome) {
@@ -100,7 +101,7 @@ ElasticfusionSystem::Quality ElasticfusionSystem::follow(const surfels::LiveFram
   }
   ++bad_frames_;
   outcome.status = health::FrameStatus::lost;
-  outcome.reason = was_lost ? "it was lost, and fits no place that is known"
+  outcome.reason = was_lost ? "the camera is lost, and the frame matches no stored place"
                             : "its depth fits the model badly, or too little of it";
   if (was_lost) T_world_camera_ = T_world_before;
   return Quality::bad;
@@ -130,7 +131,7 @@ bool ElasticfusionSystem::fits(const tracking::TrackedMotion& motion) const {
          motion.variance() <= kMostVariance / size;
 }
 
-/// Goes to the place that ferns know, if there is one.
+/// Relocalises by ferns.
 void ElasticfusionSystem::find_again(const surfels::LiveFrame& live, health::StageTimes& stages) {
   std::optional<SE3> T_world_camera;
   {
@@ -140,7 +141,7 @@ void ElasticfusionSystem::find_again(const surfels::LiveFrame& live, health::Sta
   if (!T_world_camera) return;
   T_world_camera_ = *T_world_camera;
   if (inertial_) inertial_->move_to(T_world_camera_);
-  before_.reset();  // the frame before was elsewhere
+  before_.reset();  // the previous frame has another pose
   render(stages);
 }
 

@@ -1,6 +1,6 @@
-// ElasticFusion's method on the processor (Whelan et al., "ElasticFusion: Dense SLAM Without A Pose Graph",
-// RSS 2015, and "ElasticFusion: Real-time dense SLAM and light source estimation", IJRR 2016): a map of
-// surfels, tracked against by colour and depth together, and bent when places are seen again.
+// ElasticFusion's method on the CPU (Whelan et al., "ElasticFusion: Dense SLAM Without A Pose Graph", RSS
+// 2015, and "ElasticFusion: Real-time dense SLAM and light source estimation", IJRR 2016): a map of surfels,
+// tracking by colour and depth, and deformation of the map by loops.
 #pragma once
 
 #include <cstdint>
@@ -20,23 +20,24 @@ namespace fusebench::systems::elasticfusion {
 
 class ElasticfusionSystem final : public System {
  public:
-  /// imu: of the whole recording, sorted; read if the options say so. It and workers must outlive the system.
+  /// imu: of the whole recording, sorted; used if the options require it. imu and workers must outlive the
+  /// system.
   ElasticfusionSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
                       const Workers& workers);
 
-  /// The first frame with depth is the first one; the world is its camera. Error data_corrupt: the inertial
-  /// samples do not cover the frames.
+  /// The world is the camera frame of the first frame with depth. Error data_corrupt: the inertial samples do
+  /// not cover the frames.
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
-  /// The poses as loops have bent them, if there were any; the model is of these already.
+  /// Poses after the deformations by loops, if there were any; the model is already deformed.
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override;
-  /// The stable surfels, a triangle of each disc's area.
+  /// The stable surfels, as triangles with the area of their discs.
   [[nodiscard]] Surface take_surface() override;
 
  private:
   enum class Quality { good, bad };
   struct EarlierFrame {
     surfels::LiveFrame live;
-    tracking::LiveLevel small;  ///< for the rotation where tracking starts
+    tracking::LiveLevel small;  ///< start of tracking: rotation at a coarse level
   };
   [[nodiscard]] Result<void> predict(std::int64_t capture_ns);
   Quality follow(const surfels::LiveFrame& live, const tracking::LivePyramid& levels,
@@ -56,12 +57,12 @@ class ElasticfusionSystem final : public System {
   surfels::SurfelMap map_;
   surfels::SurfelFusion fusion_;
   surfels::ViewRenderer renderer_;
-  surfels::SurfelView view_;  ///< the stable active surfels from where the camera was
+  surfels::SurfelView view_;  ///< stable active surfels at the last pose
   tracking::CameraTracker tracker_;
   deformation::LoopCloser loops_;
   std::optional<InertialTracking> inertial_;
-  std::vector<deformation::TimedPose> poses_;  ///< of the frames that have one
-  std::optional<EarlierFrame> before_;         ///< the frame before; nothing if it was elsewhere
+  std::vector<deformation::TimedPose> poses_;  ///< of the frames with a pose
+  std::optional<EarlierFrame> before_;         ///< previous frame; nothing after a relocalisation
   SE3 T_world_camera_;
   SE3 T_before_camera_;      ///< the last step
   std::int32_t frames_ = 0;  ///< since the first one

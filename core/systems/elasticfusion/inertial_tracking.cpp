@@ -11,13 +11,14 @@ namespace fusebench::systems::elasticfusion {
 
 namespace {
 
-// Pixels share their errors (blur, calibration, holes of the model): so many count as one measurement.
+// Pixels share errors (blur, calibration, holes of the model): this number counts as one independent
+// measurement.
 constexpr double kPixelsPerMeasurement = 100;
-constexpr double kLeastScatter = 1e-9;    // of images without texture or depth along some motion
+constexpr double kLeastScatter = 1e-9;    // for images without texture or depth along some direction
 constexpr double kLeastVariance = 1e-12;  // of the predicted pose (rad^2, m^2)
 
-/// How a step of T_view_camera (on the left: rotation, then translation) follows from one of the pose of the
-/// IMU (rotation on the right, world position).
+/// Derivative of the step of T_view_camera (on the left: rotation, then translation) by the pose of the IMU
+/// (rotation on the right, world position).
 Matrix6d step_by_pose(const SE3& T_world_view, const SE3& T_view_camera, const SE3& T_imu_camera) {
   const Matrix3d R_view_world = T_world_view.rotation_matrix().transpose();
   const Matrix3d R_view_imu = T_view_camera.rotation_matrix() * T_imu_camera.rotation_matrix().transpose();
@@ -29,8 +30,8 @@ Matrix6d step_by_pose(const SE3& T_world_view, const SE3& T_view_camera, const S
   return jacobian;
 }
 
-/// What makes equations of images those of a measurement: information * scatter^-1 * information is the
-/// inverse of the covariance of the motion that they tell (the sandwich of Huber 1967).
+/// Converts equations of images to a measurement: information * scatter^-1 * information is the inverse
+/// covariance of their motion (the sandwich of Huber 1967).
 Matrix6d weighting(const tracking::ImageEquations& images) {
   const Matrix6d scatter = images.scatter + kLeastScatter * Matrix6d::Identity();
   return scatter.ldlt().solve(images.information).transpose() / kPixelsPerMeasurement;
@@ -87,7 +88,7 @@ void InertialTracking::correct(const SE3& T_world_view, const SE3& T_view_camera
   const Matrix6d covariance = pose_covariance(state_);
   const Eigen::Matrix<double, filter::kStateSize, 6> with_pose = state_.covariance.leftCols<6>();
   const Vector6d error = pose_minus(T_world_imu, state_.mean.T_world_imu);
-  // The rest of the state follows the pose by its correlations.
+  // The other states follow through their correlations.
   const filter::StateVector change = with_pose * covariance.ldlt().solve(error);
   // P - P H^T (H P H^T + R)^-1 H P, where R^-1 is the information, which may be singular.
   const Matrix6d gain = (Matrix6d::Identity() + information * covariance).fullPivLu().solve(information);

@@ -1,6 +1,6 @@
-// What an IMU says of the camera's motion, for tracking (Laidlow et al., "Dense RGB-D-Inertial SLAM with Map
-// Deformations", IROS 2017): pose, velocity, biases and gravity of the last frame are carried to the next one
-// by the inertial samples between, weigh there against the images, and are corrected by what comes out.
+// Inertial term of tracking (Laidlow et al., "Dense RGB-D-Inertial SLAM with Map Deformations", IROS 2017):
+// predicts pose, velocity, biases and gravity by the inertial samples, adds the prediction as a prior to the
+// image equations, and corrects the state by the result.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ namespace fusebench::systems::elasticfusion {
 
 class InertialTracking {
  public:
-  /// The samples are of the whole recording, sorted; they and the rest must outlive it.
+  /// samples: of the whole recording, sorted. All arguments must outlive the object.
   InertialTracking(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> samples)
       : config_(config), rig_(rig), samples_(samples) {}
 
-  /// The first frame, whose camera is the world. Error data_corrupt: no samples around it.
+  /// Starts at the first frame, whose camera frame is the world. Error data_corrupt: no samples around it.
   [[nodiscard]] Result<void> start(std::int64_t capture_ns);
 
-  /// Carries the state to the next frame. Error data_corrupt: samples do not cover the interval.
+  /// Predicts the state of the next frame. Error data_corrupt: samples do not cover the interval.
   [[nodiscard]] Result<void> predict(std::int64_t capture_ns);
   [[nodiscard]] SE3 T_world_camera() const { return state_.mean.T_world_imu * rig_.T_imu_camera; }
 
-  /// How the pose of the prediction weighs against images, by its covariance. Valid until the state changes.
+  /// Prior of the predicted pose, weighted by its covariance. Valid until the state changes.
   class Term final : public tracking::PoseTerm {
    public:
     Term(const InertialTracking& inertial, const SE3& T_world_view);
@@ -41,10 +41,10 @@ class InertialTracking {
     Matrix6d prediction_information_;  ///< of errors of the predicted pose
   };
 
-  /// After tracking with the term: the pose that came out, and what images said there.
+  /// Corrects the state by the tracked pose and the image equations there.
   void correct(const SE3& T_world_view, const SE3& T_view_camera, const tracking::ImageEquations& images);
 
-  /// The camera is elsewhere, as a loop says: velocity and gravity turn with it.
+  /// Moves the state to a pose given by a loop; velocity and gravity rotate with it.
   void move_to(const SE3& T_world_camera);
 
  private:

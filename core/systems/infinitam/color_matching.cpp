@@ -18,7 +18,8 @@ double bilinear(const Image<float>& image, double x, double y) {
          (1 - dx) * dy * at(left, top + 1) + dx * dy * at(left + 1, top + 1);
 }
 
-/// Tukey's norm of a residual, with its derivative and what the program takes for the second one.
+/// Tukey's norm of a residual with its derivative and the approximate second derivative of the published
+/// program.
 struct TukeyNorm {
   double cost, first, second;
 

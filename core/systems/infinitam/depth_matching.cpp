@@ -25,7 +25,7 @@ struct PosedCamera {
   Eigen::Vector3f t;
 };
 
-/// Four neighbours of a place with their bilinear weights.
+/// Four neighbours of a position with bilinear weights.
 struct Neighbours {
   std::array<simd::Int8, 4> at;
   std::array<simd::Float8, 4> share;
@@ -45,7 +45,7 @@ struct Neighbours {
     return sum;
   }
   [[nodiscard]] simd::Points of(const PointMap& map) const { return {of(map.x), of(map.y), of(map.z)}; }
-  /// All four are at least 0.
+  /// True if all four values are at least 0.
   [[nodiscard]] simd::Int8 all_there(const Image<float>& image) const {
     simd::Int8 there = simd::all_lanes(-1);
     for (const simd::Int8 place : at) there &= simd::gather(image.data.data(), place) >= 0.0F;
@@ -62,7 +62,7 @@ class DepthMatcher {
         view_camera_(view.camera, view.T_world_camera.inverse()),
         matching_(matching) {}
 
-  /// Eight pixels of a row from x on; those at `columns` and beyond are left out.
+  /// Adds eight pixels of a row from x on; skips pixels from `columns` on.
   void add(const float* depth_m, int x, int y, int columns, PoseSumLanes& sums) const {
     const simd::Float8 u = simd::kLaneNumber + static_cast<float>(x);
     const simd::Float8 depth = simd::load(depth_m);

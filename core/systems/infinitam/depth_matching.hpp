@@ -1,4 +1,4 @@
-// Point to plane: pixels of a depth image against the rendered view of the model.
+// Point-to-plane registration of a depth image with a rendered view of the model.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -8,21 +8,21 @@
 
 namespace fusebench::systems::infinitam {
 
-/// How matches are chosen and weighed.
+/// Limits and weights of matches.
 struct DepthMatching {
-  double max_squared_distance_m2 = 0;  ///< of a match
-  /// Width of Huber's norm (metres); 0: squares, all of one weight (the icp tracker).
+  double max_squared_distance_m2 = 0;  ///< limit of a match
+  /// Width of Huber's norm (metres); 0: least squares with equal weights (the icp tracker).
   double huber_m = 0;
-  double near_m = 0;  ///< with Huber's norm, weights fall from 1 here
-  double far_m = 0;   ///< to 0 here, as the square of what is left
+  double near_m = 0;  ///< with Huber's norm: weight 1 here,
+  double far_m = 0;   ///< decreasing quadratically to 0 here
   bool by_weight = false;
-  double weight_to_skip = 0;   ///< surfaces of less are not used
-  double weight_to_count = 1;  ///< beyond that, a match counts in proportion: 1 at so much
+  double weight_to_skip = 0;   ///< surfaces of smaller weight are not used
+  double weight_to_count = 1;  ///< above weight_to_skip, the weight is proportional and 1 at this value
 };
 
-/// Sums over all pixels of a level that have a match: each is moved into the world, seen from the view's
-/// camera, and compared with the point interpolated there (only between four pixels that have one), along the
-/// normal interpolated there. The gradient is that of the norm; no test of normals, as in the program.
+/// Sums over all pixels of a level with a match. Each is transformed to the world, projected into the view's
+/// camera, and compared with the point interpolated there (requires four valid pixels) along the interpolated
+/// normal. The gradient is that of the norm. Normals are not compared, as in the published program.
 [[nodiscard]] PoseSums match_depth(const DepthImage& depth_m, const PinholeCamera& camera,
                                    const SE3& T_world_camera, const ModelView& view,
                                    const DepthMatching& matching, const Workers& workers);

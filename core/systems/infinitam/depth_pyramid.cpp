@@ -7,7 +7,7 @@ namespace fusebench::systems::infinitam {
 
 namespace {
 
-/// reduce(four pixels) gives the pixel of the smaller image.
+/// reduce(four pixels) returns the pixel of the next level.
 template <class Reduce>
 std::vector<Image<float>> pyramid(Image<float> image, int levels, const Reduce& reduce) {
   std::vector<Image<float>> result{std::move(image)};

@@ -12,13 +12,13 @@ namespace fusebench::systems::infinitam {
 
 namespace {
 
-constexpr int kLevel = 4;                   // of the pyramid: 40x30 of 640x480
+constexpr int kLevel = 4;                   // pyramid level: 40x30 for 640x480
 constexpr double kSmoothing_px = 2.5;       // standard deviation
-constexpr int kSmoothingReach_px = 5;       // two of them
-constexpr double kKeptDissimilarity = 0.2;  // a frame that differs more from all others is stored
+constexpr int kSmoothingReach_px = 5;       // two standard deviations
+constexpr double kKeptDissimilarity = 0.2;  // a frame is stored if its dissimilarity to all others is larger
 constexpr std::uint64_t kSeed = 20150711;
 
-/// Of measured pixels alone; 0 where there is none in reach.
+/// Mean over measured pixels; 0 if none is within reach.
 DepthImage smoothed(const DepthImage& image) {
   DepthImage result(image.width, image.height);
   for (int y = 0; y < image.height; ++y) {
@@ -42,7 +42,7 @@ DepthImage smoothed(const DepthImage& image) {
 
 FernRelocaliser::FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth,
                                  config::PeerDefects defects) {
-  // The program draws places in an image of half the size of the one that it tests.
+  // The published program draws positions in an image of half the size of the tested image.
   const int level = defects == config::PeerDefects::as_published ? kLevel + 1 : kLevel;
   const PinholeCamera small = camera_of_level(camera, level);
   std::mt19937_64 generator(kSeed);

@@ -1,4 +1,4 @@
-// Frames seen before, by random tests on a small depth image (Glocker et al., "Real-Time RGB-D Camera
+// Store of frames encoded by random tests on a small depth image (Glocker et al., "Real-Time RGB-D Camera
 // Relocalization via Randomized Ferns for Keyframe Encoding", 2015).
 #pragma once
 
@@ -13,13 +13,13 @@ namespace fusebench::systems::infinitam {
 
 class FernRelocaliser {
  public:
-  /// Tests compare depth at random places with random depths between depth.min_m and max_m; the same for the
-  /// same size of images.
+  /// Tests compare the depth at random positions with random depths between depth.min_m and max_m. They are
+  /// fixed for each image size.
   FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth, config::PeerDefects defects);
 
   [[nodiscard]] ferns::FernCode code_of(const DepthImage& depth_m) const;
 
-  /// Stores the frame unless one like it is there; returns whether it did.
+  /// Stores the frame unless a similar one is stored; returns whether it was stored.
   bool offer(const ferns::FernCode& code, const SE3& T_world_camera);
 
   /// The pose of the most similar stored frame; nothing if there is none.

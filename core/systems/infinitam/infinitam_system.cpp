@@ -9,9 +9,10 @@ namespace fusebench::systems::infinitam {
 
 namespace {
 
-constexpr std::uint32_t kFramesBeforeWeights = 100;  // the tracker takes all surfaces as equal until then
-constexpr std::uint32_t kFramesFusedAnyway = 50;     // however well they were tracked
-constexpr int kGoodFramesAfterRelocalisation = 10;   // before frames are fused again
+// until then, the tracker gives all surfaces equal weight
+constexpr std::uint32_t kFramesBeforeWeights = 100;
+constexpr std::uint32_t kFramesFusedAnyway = 50;    // the first frames are fused whatever their quality
+constexpr int kGoodFramesAfterRelocalisation = 10;  // tracked before fusion continues
 
 bool has_depth(const RgbdFrame& frame) {
   return std::ranges::any_of(frame.depth_m.data, [](float depth_m) { return depth_m > 0; });
@@ -85,7 +86,7 @@ InfinitamSystem::Quality InfinitamSystem::track(const FrameLevels& levels, healt
   return judge(pose);
 }
 
-/// Stores the frame, or looks for its place if it has failed; the quality afterwards.
+/// Stores the frame or, after a failure, relocalises it; returns the resulting quality.
 InfinitamSystem::Quality InfinitamSystem::relocalise(const FrameLevels& levels, Quality quality,
                                                      health::FrameOutcome& outcome) {
   if (config_.on_failure != config::InfinitamFailure::relocalise) return quality;
@@ -97,7 +98,7 @@ InfinitamSystem::Quality InfinitamSystem::relocalise(const FrameLevels& levels, 
   if (place == nullptr) return quality;
   unfused_good_frames_ = kGoodFramesAfterRelocalisation;
   T_world_camera_ = *place;
-  before_.reset();  // the frame before was elsewhere
+  before_.reset();  // the previous frame has another pose
   render(outcome.stages);
   quality = track(levels, outcome.stages);
   if (quality != Quality::failed) outcome.status = health::FrameStatus::relocalised;

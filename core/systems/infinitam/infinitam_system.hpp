@@ -1,6 +1,6 @@
-// InfiniTAM's method, frame by frame: track against a view of the model, fuse, render the next view
-// (Kaehler et al., "Very High Frame Rate Volumetric Integration of Depth Images on Mobile Devices", 2015;
-// Prisacariu et al., "InfiniTAM v3", 2017). The model and its ray casting are those of this program.
+// InfiniTAM's method: track against a view of the model, fuse, render the next view (Kaehler et al., "Very
+// High Frame Rate Volumetric Integration of Depth Images on Mobile Devices", 2015; Prisacariu et al.,
+// "InfiniTAM v3", 2017). Model and ray casting are those of this project.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ namespace fusebench::systems::infinitam {
 
 class InfinitamSystem final : public System {
  public:
-  /// workers must outlive it.
+  /// workers must outlive the system.
   InfinitamSystem(const config::InfinitamConfig& config, const config::DepthConfig& depth,
                   const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
 
-  /// The first frame with depth is the first one; the world is its camera. Error run_failed: a full model.
+  /// The world is the camera frame of the first frame with depth. Error run_failed: a full model.
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] Surface take_surface() override;
 
@@ -43,10 +43,10 @@ class InfinitamSystem final : public System {
   PoseTracker tracker_;
   FernRelocaliser relocaliser_;
   ModelView view_;
-  std::optional<FrameLevels> before_;  ///< the frame before
+  std::optional<FrameLevels> before_;  ///< the previous frame
   SE3 T_world_camera_;
   std::uint32_t frames_ = 0;     ///< since the first one
-  int unfused_good_frames_ = 0;  ///< still to come after a relocalisation before frames are fused
+  int unfused_good_frames_ = 0;  ///< frames that will not be fused, after a relocalisation
 };
 
 }  // namespace fusebench::systems::infinitam

@@ -11,16 +11,16 @@ namespace fusebench::systems::infinitam {
 
 namespace {
 
-constexpr int kBorder_px = 3;  // no normals there
+constexpr int kBorder_px = 3;  // without normals
 constexpr double kNearNeighbours_m = 0.15;
 
-/// Of the voxel nearest to the point; 0 if it was never observed.
+/// Weight of the voxel nearest to the point; 0 if it was never observed.
 float weight_at(const tsdf::TsdfVolume& model, const Vector3d& point_world) {
   const auto place = model.nearest_voxel(point_world);
   return place ? model.voxel(place->slot, place->offset).weight : 0.0F;
 }
 
-/// Differences of the points around a pixel, right less left and below less above.
+/// Differences of the points around a pixel: right minus left, below minus above.
 struct Differences {
   Vector3d across;
   Vector3d down;
@@ -30,20 +30,20 @@ struct Differences {
   }
 };
 
-/// The surface points of a view while its normals are made.
+/// Surface points of a view, for the computation of normals.
 class RenderedPoints {
  public:
   RenderedPoints(const std::vector<raycast::SurfacePoint>& surfaces, const PinholeCamera& camera)
       : surfaces_(surfaces), camera_(camera) {}
 
-  /// In the camera's frame.
+  /// Point in the camera frame.
   [[nodiscard]] std::optional<Vector3d> at(int x, int y) const {
     const auto pixel = static_cast<std::size_t>(y * camera_.width_px + x);
     if (!surfaces_[pixel].valid) return std::nullopt;
     return camera_.back_project(x, y, surfaces_[pixel].depth_m);
   }
 
-  /// Unit, towards the camera, in its frame.
+  /// Unit normal in the camera frame, towards the camera.
   [[nodiscard]] std::optional<Vector3d> normal_at(int x, int y) const {
     const auto point = at(x, y);
     const bool inside = x >= kBorder_px && y >= kBorder_px && x < camera_.width_px - kBorder_px &&
@@ -52,7 +52,7 @@ class RenderedPoints {
     auto differences = differences_at(x, y, 2);
     if (!differences || !differences->are_near()) differences = differences_at(x, y, 1);
     if (!differences) return std::nullopt;
-    // y points down, so down x across looks back at the camera.
+    // y points down, so down x across points towards the camera.
     const Vector3d normal = differences->down.cross(differences->across).normalized();
     if (!(normal.dot(*point) < 0)) return std::nullopt;
     return normal;

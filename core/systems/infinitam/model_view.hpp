@@ -1,4 +1,4 @@
-// What a camera sees of the model: the surface point behind each pixel, its normal and its weight.
+// Rendered view of the model: surface point, normal and weight at each pixel.
 #pragma once
 
 #include <vector>
@@ -16,17 +16,17 @@ struct ModelView {
   PinholeCamera camera;
   SE3 T_world_camera;
   PointMap point;       ///< world, metres
-  PointMap normal;      ///< unit, towards the camera
-  Image<float> weight;  ///< of the model at the point; negative where there is no point with a normal
+  PointMap normal;      ///< world, unit, towards the camera
+  Image<float> weight;  ///< weight of the model at the point; negative without a point and normal
 };
 
-/// Renders views of a model, and keeps the memory for it.
+/// Renders views of a model and reuses its buffers.
 class ModelRenderer {
  public:
   ModelRenderer(const PinholeCamera& camera, const config::DepthConfig& depth);
 
-  /// Normals are cross products of differences over two pixels either way; over one where these are not
-  /// there or 15 cm apart. with_weights: false leaves 1 in place of each weight.
+  /// Normals are cross products of differences over two pixels to either side, or one pixel if these are
+  /// missing or more than 15 cm apart. with_weights: false sets all weights to 1.
   void render(const tsdf::TsdfVolume& model, const SE3& T_world_camera, bool with_weights,
               const Workers& workers, ModelView& view);
 

@@ -13,11 +13,11 @@ namespace fusebench::systems::infinitam {
 
 namespace {
 
-constexpr double kFewestPixels = 100;  // fewer matches tell nothing
+constexpr double kFewestPixels = 100;  // fewer matches are insufficient
 
 int level_count(const config::InfinitamConfig& config) { return config.rotation_levels + config.full_levels; }
 
-/// The step that the damped normal equations ask for; zero where they have no solution.
+/// Step of the damped normal equations; zero if they are singular.
 Vector6d damped_step(const PoseSums& sums, double damping, bool rotation_only) {
   Matrix6d damped = sums.information;
   damped.diagonal() *= 1 + damping;
@@ -32,7 +32,7 @@ Vector6d damped_step(const PoseSums& sums, double damping, bool rotation_only) {
   return step.allFinite() ? step : Vector6d::Zero();
 }
 
-/// The camera after a motion of the world's points.
+/// Camera pose after a motion of the world points.
 SE3 moved(const SE3& T_world_camera, const Vector6d& step) {
   return SE3{so3_exp(step.head<3>()), step.tail<3>()} * T_world_camera;
 }
@@ -49,10 +49,10 @@ struct PoseTracker::Level {
   PinholeCamera camera;
 };
 
-/// Where a level ended.
+/// Result of a level.
 struct PoseTracker::Descent {
   SE3 T_world_camera;
-  double depth_pixels = 0;  ///< with a match, at the last pose that was accepted
+  double depth_pixels = 0;  ///< with a match, at the last accepted pose
 };
 
 FrameLevels levels_of(const RgbdFrame& frame, const config::InfinitamConfig& config) {
@@ -111,14 +111,14 @@ PoseSums PoseTracker::evaluate(const FrameLevels& frame, const Level& level, con
                             config_.min_color_gradient, depth_.min_m, depth_.max_m};
   PoseSums intensity = match_color(colors, T_world_camera, target.view.T_world_camera, color, workers_);
   if (intensity.pixels <= kFewestPixels) return sums;
-  // As the program has it: the weight enters the gradient once and the information twice.
+  // As in the published program: the weight enters the gradient once and the information twice.
   intensity = intensity.mean();
   intensity.descent *= config_.color_weight;
   intensity.information *= config_.color_weight * config_.color_weight;
   return sums += intensity;
 }
 
-/// Largest component (extended), or the length by six (icp), as the program's trackers have it.
+/// Largest component (extended), or length / 6 (icp), as in the published program.
 bool PoseTracker::is_small(const Vector6d& step) const {
   if (config_.tracker == config::InfinitamTracker::extended)
     return step.cwiseAbs().maxCoeff() <= config_.min_step;
@@ -143,12 +143,12 @@ PoseTracker::Descent PoseTracker::descend(const FrameLevels& frame, const Level&
       T_world_camera = accepted.T_world_camera;
       damping *= 10;
     }
-    if (!std::isfinite(sums.cost)) break;  // nothing matches at the start
+    if (!std::isfinite(sums.cost)) break;  // no matches at the start
     const Vector6d step = damped_step(sums, damping, level.rotation_only);
     T_world_camera = moved(T_world_camera, step);
     if (is_small(step)) break;
   }
-  // The last step is taken without another look at its cost, as in the program.
+  // The last step is accepted without an evaluation of its cost, as in the published program.
   accepted.T_world_camera = T_world_camera;
   return accepted;
 }

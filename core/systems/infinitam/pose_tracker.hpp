@@ -1,4 +1,4 @@
-// Where the camera is: damped Gauss-Newton over the levels of a frame, coarse to fine (Kaehler et al. 2015).
+// Camera tracking: damped Gauss-Newton over the levels of a frame, coarse to fine (Kaehler et al. 2015).
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@
 
 namespace fusebench::systems::infinitam {
 
-/// A frame's levels, the finest one first. Those of intensities are empty where colour is not used.
+/// The levels of a frame, finest first. Intensity levels are empty if colour is not used.
 struct FrameLevels {
   std::vector<DepthImage> depth_m;
   std::vector<Image<float>> intensity;
@@ -21,16 +21,16 @@ struct FrameLevels {
 };
 [[nodiscard]] FrameLevels levels_of(const RgbdFrame& frame, const config::InfinitamConfig& config);
 
-/// What a frame is aligned with.
+/// Reference of the alignment.
 struct TrackingTarget {
-  const ModelView& view;      ///< the model from where the camera was
-  const FrameLevels* before;  ///< the frame that was fused last, at the pose of the view; may be nullptr
-  bool by_weight = false;     ///< surfaces count by their weight
+  const ModelView& view;      ///< rendered at the last camera pose
+  const FrameLevels* before;  ///< last fused frame, at the pose of the view; may be nullptr
+  bool by_weight = false;     ///< weights surfaces by their model weight
 };
 
 struct TrackedPose {
   SE3 T_world_camera;
-  double inlier_share = 0;  ///< of the measured pixels of the finest level, those with a match
+  double inlier_share = 0;  ///< share of the measured pixels of the finest level that have a match
 };
 
 class PoseTracker {

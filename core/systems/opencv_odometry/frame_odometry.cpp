@@ -15,7 +15,7 @@ namespace {
 using cv::rgbd::Odometry;
 using cv::rgbd::OdometryFrame;
 
-/// The class prepares both frames of a pair anew. Each frame is enough once.
+/// FastICPOdometry prepares both frames of a pair each time. This class prepares each frame once.
 class RememberingFastIcp final : public cv::rgbd::FastICPOdometry {
  public:
   using cv::rgbd::FastICPOdometry::FastICPOdometry;

@@ -1,4 +1,4 @@
-// The motion between two frames by OpenCV's odometries (module rgbd).
+// Motion between two frames by OpenCV's odometries (module rgbd).
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace fusebench::systems::opencv_odometry {
 
-/// Keeps one frame, and finds the motion to it. As the library's own example uses it: the pyramids of a frame
-/// serve for two pairs, and pixels without depth are NaN.
+/// Stores a reference frame and estimates the motion to it. As in the example of the library, the pyramids of
+/// a frame are used for two pairs, and pixels without depth are NaN.
 class FrameOdometry {
  public:
   FrameOdometry(config::OdometryMethod method, const PinholeCamera& camera);
@@ -18,11 +18,11 @@ class FrameOdometry {
 
   /// Takes the next frame; its images are copied.
   void receive(const RgbdFrame& frame);
-  /// T_kept_received, of the frame that is kept and the one that was received last; nothing if the library
-  /// finds no motion, or nothing is kept.
+  /// T_kept_received between the kept and the last received frame; nothing if the library fails or no frame
+  /// is kept.
   [[nodiscard]] std::optional<SE3> motion();
   [[nodiscard]] bool keeps_one() const;
-  /// Keeps the frame that was received last in place of the one before.
+  /// Keeps the last received frame instead of the previous one.
   void keep_received();
 
  private:

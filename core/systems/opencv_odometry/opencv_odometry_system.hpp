@@ -1,4 +1,4 @@
-// OpenCV's odometries, frame to frame, with a TSDF fused at the poses that they add up to.
+// OpenCV's frame-to-frame odometries, with a TSDF fused at the accumulated poses.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -11,13 +11,12 @@ namespace fusebench::systems::opencv_odometry {
 
 class OpencvOdometrySystem final : public System {
  public:
-  /// workers must outlive it. The library's own threads are limited to as many.
+  /// workers must outlive the system. The library is limited to the same number of threads.
   OpencvOdometrySystem(config::OdometryMethod method, const config::DepthConfig& depth,
                        const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
 
-  /// The first frame is the first one, and the world its camera. A motion that the library does not find
-  /// makes the frame lost: it is not fused, and the next one is compared with the last one that was not lost.
-  /// Error run_failed: a full model.
+  /// The world is the camera frame of the first frame. If the library finds no motion, the frame is lost: it
+  /// is not fused, and the next one is compared with the last tracked frame. Error run_failed: a full model.
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] Surface take_surface() override;
 

@@ -1,4 +1,4 @@
-// The module that is the image library. The only file that includes OpenImageIO.
+// Module with the image library. The only file that includes OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -13,7 +13,7 @@ namespace fusebench::images {
 
 namespace {
 
-/// The type that samples are read as: half floats become floats.
+/// Sample type for reading: half floats become floats.
 OIIO::TypeDesc read_type_of(const OIIO::ImageSpec& spec) {
   return spec.format == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT) : spec.format;
 }
@@ -28,14 +28,14 @@ SampleType sample_type_of(const OIIO::TypeDesc& type) {
 LibraryResult<void> read_pixels(OIIO::ImageInput& input, int channels, std::span<std::byte> pixels) {
   const OIIO::ImageSpec& spec = input.spec();
   const OIIO::TypeDesc type = read_type_of(spec);
-  // An image may have a depth besides width and height.
+  // An image may have a depth in addition to width and height.
   if (pixels.size() != spec.image_pixels() * static_cast<std::uint64_t>(channels) * type.size())
     return tl::unexpected(std::string("its pixels do not match its width and height"));
   if (!input.read_image(0, 0, 0, channels, type, pixels.data())) return tl::unexpected(input.geterror());
   return {};
 }
 
-/// owned: what the input reads from, and needs as long as it is there.
+/// owned: source of the input, kept alive with it.
 template <class Owned>
 LibraryResult<OpenedImage> opened(std::shared_ptr<OIIO::ImageInput> input, Owned owned) {
   if (!input) return tl::unexpected(OIIO::geterror());
@@ -48,7 +48,7 @@ LibraryResult<OpenedImage> opened(std::shared_ptr<OIIO::ImageInput> input, Owned
                      }};
 }
 
-/// Colours as they are stored: by default the library multiplies them by alpha.
+/// Stored colours without the multiplication by alpha, which is the library's default.
 OIIO::ImageSpec stored_colors() {
   OIIO::ImageSpec settings;
   settings.attribute("oiio:UnassociatedAlpha", 1);
@@ -64,7 +64,7 @@ LibraryResult<OpenedImage> open_bytes(const std::string& name, std::span<const s
   const auto memory =
       std::make_shared<OIIO::Filesystem::IOMemReader>(const_cast<std::byte*>(bytes.data()), bytes.size());
   OIIO::ImageSpec settings = stored_colors();
-  // With settings, the library takes the bytes from these alone.
+  // With this setting, the library reads from these bytes only.
   OIIO::Filesystem::IOProxy* const source = memory.get();
   settings.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
   return opened(OIIO::ImageInput::open(name, &settings, source), memory);
@@ -77,8 +77,8 @@ LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int
   if (!output) return tl::unexpected(OIIO::geterror());
   OIIO::ImageSpec spec(image.width_px, image.height_px, image.channels, OIIO::TypeDesc::UINT8);
   spec.attribute("CompressionQuality", quality);
-  // A writer that memory ran out for is not destroyed: its destructor writes the lines that are missing, and
-  // does not end where the library has not begun to compress.
+  // If memory is exhausted, the writer is not destroyed: its destructor writes the missing lines and does not
+  // return if compression has not begun.
   try {
     if (output->set_ioproxy(&memory) && output->open("memory.jpg", spec) &&
         output->write_image(spec.format, image.pixels.data()) && output->close())
@@ -100,9 +100,8 @@ constexpr ImageLibrary kLibrary{open_image, open_bytes, encode_jpeg};
 
 const fusebench::images::ImageLibrary* fusebench_image_library(const char* build) {
   if (std::string_view(build) != fusebench::images::kImageLibraryBuild) return nullptr;
-  // Decoding runs inside of our own parallel loops, so the library must not start threads of its own. Nor may
-  // OpenEXR (-1: none): in a run, forked from an engine that has opened the recording, decoding would wait
-  // for them for ever.
+  // Decoding runs in this program's own parallel loops, so the library must not start threads. OpenEXR must
+  // have none either (-1): in a run forked from an engine, decoding would wait for threads that do not exist.
   static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
   static_cast<void>(done);
   return &fusebench::images::kLibrary;

@@ -9,7 +9,7 @@
 
 namespace fusebench::simulator::faults {
 
-/// Deviation of calibration.toml from the truth, in directions from the seed.
+/// Deviation of calibration.toml from the ground truth, in random directions by the seed.
 struct CalibrationError {
   double rotation_deg = 0;  ///< 0 to 45
   double shift_cm = 0;      ///< 0 to 50
@@ -23,8 +23,8 @@ struct CalibrationError {
 /// Error configuration: out of range.
 [[nodiscard]] Result<void> check_calibration_error(const CalibrationError& error);
 
-/// The wrong T_imu_camera: turned about an axis, its translation shifted. Without an error, the true one
-/// unchanged.
+/// The wrong T_imu_camera: rotated about a random axis, with a shifted translation. Without an error, the
+/// true one unchanged.
 [[nodiscard]] SE3 miscalibrated(const SE3& T_imu_camera, const CalibrationError& error, std::uint64_t seed);
 
 }  // namespace fusebench::simulator::faults

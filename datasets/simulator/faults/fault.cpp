@@ -55,7 +55,7 @@ Result<double> number_of(std::string_view text, std::string_view whole) {
               fmt::format("faults are {}", kForm));
 }
 
-/// Validation of a single fault.
+/// Validates a single fault; returns the complaint or an empty text.
 std::string complaint(const SimulatedFault& fault, std::span<const std::int64_t> frame_ns) {
   const FaultDescription& kind = describe(fault.kind);
   const double last_s = seconds_between(frame_ns.front(), frame_ns.back());

@@ -1,5 +1,4 @@
-// What goes wrong with the images of a simulated recording, and when: a closed list of kinds, each with an
-// amount where it has one.
+// Faults of the images of a simulated recording: kind, time span and, for some kinds, an amount.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +18,8 @@ enum class FaultKind { black, no_depth, no_texture, hand, person, brightness, dr
 struct FaultDescription {
   FaultKind kind;
   std::string_view name;
-  std::string_view amount;  ///< what the amount is; empty: this kind has none, and the next three are 0
-  double usual;             ///< the amount if none is given
+  std::string_view amount;  ///< meaning of the amount; empty: this kind has none, and the next three are 0
+  double usual;             ///< default amount
   double least;
   double most;
   std::string_view sentence;
@@ -28,10 +27,10 @@ struct FaultDescription {
 [[nodiscard]] std::span<const FaultDescription> fault_kinds();
 [[nodiscard]] const FaultDescription& describe(FaultKind kind);
 
-/// One fault: it holds for frames whose stamp is at begin_s or later, and before end_s.
+/// A fault applies to frames with begin_s <= stamp < end_s.
 struct SimulatedFault {
   FaultKind kind = FaultKind::black;
-  double begin_s = 0;  ///< these two: from the stamp of the first frame
+  double begin_s = 0;  ///< begin_s and end_s are relative to the first frame
   double end_s = 0;
   double amount = 0;
 
@@ -42,29 +41,29 @@ struct SimulatedFault {
 /// kind, an amount for a kind that has none.
 [[nodiscard]] Result<SimulatedFault> parse_fault(std::string_view text);
 
-/// The text that parse_fault reads as the same fault.
+/// Text that parse_fault() reads as the same fault.
 [[nodiscard]] std::string to_string(const SimulatedFault& fault);
 
 /// Errors (configuration) name the fault: times out of order, no frame within them, an amount out of range,
-/// two faults of a kind at once, a hand beside a person, an exposure longer than from frame to frame, a first
-/// frame that is dropped, fewer than two frames left. frame_ns: stamps, at least two.
+/// two faults of a kind at once, a hand and a person at once, an exposure longer than the frame interval, a
+/// dropped first frame, fewer than two frames left. frame_ns: stamps, at least two.
 [[nodiscard]] Result<void> check_faults(std::span<const SimulatedFault> faults,
                                         std::span<const std::int64_t> frame_ns);
 
-/// What all faults together make of one frame.
+/// Combined effect of all faults on one frame.
 struct FrameFaults {
   bool black = false;
-  bool no_depth = false;  ///< also if black
+  bool no_depth = false;  ///< also set if black
   bool no_texture = false;
   bool dropped = false;
   double brightness = 1;
   std::optional<double> exposure_s;
-  std::optional<std::size_t> hand;    ///< index of the fault; never beside a person
+  std::optional<std::size_t> hand;    ///< index of the fault; exclusive with person
   std::optional<std::size_t> person;  ///< index of the fault
 };
 [[nodiscard]] FrameFaults faults_at(std::span<const SimulatedFault> faults, std::int64_t since_first_ns);
 
-/// By frame, whether it is missing.
+/// True for each frame that is dropped.
 [[nodiscard]] std::vector<bool> dropped_frames(std::span<const SimulatedFault> faults,
                                                std::span<const std::int64_t> frame_ns);
 

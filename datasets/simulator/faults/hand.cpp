@@ -17,9 +17,9 @@ constexpr double kDistance_m = 0.4;
 constexpr double kDome_m = 0.03;
 constexpr double kMaxReach_m = 0.1;
 constexpr double kMaxTurn_rad = 0.15;
-// Area of |x|^4 + |y|^4 <= 1, against that of the square around it: Gamma(5/4)^2 / Gamma(3/2).
+// Ratio of the area of |x|^4 + |y|^4 <= 1 to that of its bounding square: Gamma(5/4)^2 / Gamma(3/2).
 constexpr double kAreaOfSquare = 0.92703733865;
-const Vector3d kFrequencies_hz(0.9, 0.6, 0.5);  // from side to side, up and down, turn
+const Vector3d kFrequencies_hz(0.9, 0.6, 0.5);  // sideways, vertical, rotation
 
 constexpr std::uint32_t kRings = 12;
 constexpr std::uint32_t kSectors = 64;
@@ -40,7 +40,7 @@ Hand::Hand(const PinholeCamera& color, double share, std::uint64_t seed)
       color.back_project(0.5 * (color.width_px - 1), 0.5 * (color.height_px - 1), kDistance_m).head<2>();
   const double free = std::max(0.0, 1 - scale);
   turn_rad_ = kMaxTurn_rad * free;
-  // A turned card needs a little of the free margin itself.
+  // The rotation of the card takes a part of the free margin.
   const Vector2d corner_m = turn_rad_ * half_m_.reverse();
   reach_m_ = (0.5 * free * image_m - corner_m).cwiseMax(0.0).cwiseMin(kMaxReach_m);
   random::RandomSequence random(seed_);

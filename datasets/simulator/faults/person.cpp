@@ -42,7 +42,8 @@ void add_ellipsoid(const BodyPart& part, scene::SimulatedScene& scene) {
   const auto first = static_cast<std::uint32_t>(scene.mesh.vertices.size());
   for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
     const double polar = std::numbers::pi * ring / kRings;
-    for (std::uint32_t s = 0; s <= kSectors; ++s) {  // the seam has its vertices twice, for the texture
+    // the vertices of the seam are duplicated for the texture
+    for (std::uint32_t s = 0; s <= kSectors; ++s) {
       const double angle = 2 * std::numbers::pi * s / kSectors;
       const Vector3d unit(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
                           std::cos(polar));
@@ -55,7 +56,7 @@ void add_ellipsoid(const BodyPart& part, scene::SimulatedScene& scene) {
   const auto vertex = [&](std::uint32_t ring, std::uint32_t s) { return first + ring * (kSectors + 1) + s; };
   for (std::uint32_t ring = 0; ring < kRings; ++ring) {
     for (std::uint32_t s = 0; s < kSectors; ++s) {
-      // At the poles one of the two has no area.
+      // At the poles one of the two triangles has no area.
       if (ring + 1 < kRings)
         scene.mesh.triangles.push_back({vertex(ring, s), vertex(ring + 1, s), vertex(ring + 1, s + 1)});
       if (ring > 0)
@@ -86,7 +87,7 @@ scene::SimulatedScene person_surface(std::uint64_t seed) {
 PersonWalk::PersonWalk(const SE3& T_world_camera, double middle_s, double distance_m, double floor_m)
     : middle_s_(middle_s) {
   const Matrix3d R_world_camera = T_world_camera.rotation_matrix();
-  // A camera that looks straight up or down has its upper edge towards the front.
+  // For a camera that looks straight up or down, forward is the direction of its upper image edge.
   const auto level = [](const Vector3d& direction) { return Vector3d(direction.x(), direction.y(), 0); };
   Vector3d forward = level(R_world_camera.col(2));
   if (forward.norm() < 0.1) forward = level(-R_world_camera.col(1));

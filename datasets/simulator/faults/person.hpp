@@ -1,4 +1,4 @@
-// A person who walks through the view.
+// A person who walks across the view.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +8,22 @@
 
 namespace fusebench::simulator::faults {
 
-/// A clothed figure, 1.75 m tall, of ellipsoids that do not move against each other (arms and legs do not
-/// swing). In its own frame: metres, z up, the floor at z = 0, x the way it faces.
+/// A rigid figure of ellipsoids, 1.75 m tall (arms and legs do not swing). Own frame: metres, z up, the floor
+/// at z = 0, x forward.
 [[nodiscard]] scene::SimulatedScene person_surface(std::uint64_t seed);
 
-/// A straight walk on the floor, across the view of a camera, at 1 m/s, with the rise and fall of its steps.
+/// A straight walk on the floor across the view of a camera, at 1 m/s, with the vertical motion of the steps.
 class PersonWalk {
  public:
-  /// T_world_camera: the camera that it passes before at `middle_s`, in a world with z up. distance_m: from
-  /// the camera then, level. floor_m: z of the floor.
+  /// T_world_camera: pose of the camera at `middle_s`, when the person passes in front of it; world with z
+  /// up. distance_m: horizontal distance to the camera at that time. floor_m: z of the floor.
   PersonWalk(const SE3& T_world_camera, double middle_s, double distance_m, double floor_m);
 
   [[nodiscard]] SE3 T_world_person(double time_s) const;
 
  private:
-  Vector3d middle_m_ = Vector3d::Zero();  // where it is at middle_s
-  Vector3d along_ = Vector3d::UnitX();    // unit vector, level
+  Vector3d middle_m_ = Vector3d::Zero();  // position at middle_s
+  Vector3d along_ = Vector3d::UnitX();    // horizontal unit vector
   double middle_s_ = 0;
 };
 

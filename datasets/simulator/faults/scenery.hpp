@@ -1,4 +1,4 @@
-// All geometry that rays can hit: the scene, and objects that faults add or replace.
+// All geometry that rays can hit: the scene, and the objects of faults.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ struct Scenery {
     render::Renderer surface;
   };
 
-  /// Holds what the faults need and no more. color: the camera that hands are measured by.
+  /// Holds only the objects that the faults require. color: camera that determines the size of hands.
   Scenery(const scene::SimulatedScene& scene, const PinholeCamera& color,
           std::span<const SimulatedFault> faults, std::uint64_t seed);
 
   render::Renderer scene;
-  std::optional<render::Renderer> matt;          ///< its shape in one grey, without light and shade
+  std::optional<render::Renderer> matt;          ///< shape of the scene in a uniform grey, without lighting
   std::vector<std::optional<MovingHand>> hands;  ///< by fault
   std::optional<render::Renderer> person;        ///< in its own frame
   double floor_m = 0;                            ///< z of the lowest point of the scene

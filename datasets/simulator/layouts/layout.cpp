@@ -13,9 +13,9 @@ namespace {
 
 SE3 same_world(const SimulatedData&) { return {}; }
 
-// TUM counts the seconds since 1970 with six decimals; ICL-NUIM has no clock, so frame k is at k / 30 s; the
-// ZR300 counts microseconds since its start, and its images begin 0.75 s after its IMU. Readers of the ZR300
-// tell the unit of its stamps by their spacing, so images have to lie within kImageSpacing (time_unit.hpp).
+// TUM: seconds since 1970 with six decimals. ICL-NUIM: no clock, frame k is at k / 30 s. ZR300: microseconds
+// since the start, with images from 0.75 s after the start of the IMU. Readers of the ZR300 derive the unit
+// of the stamps from their spacing, so image intervals must be within kImageSpacing (time_unit.hpp).
 constexpr std::array<LayoutDescription, 3> kLayouts = {{
     {"tum", 1'600'000'000'000'000'000, 250'000'000, 1000, true, true, 1, 240, sensors::DepthNoise::handa,
      tum_color_name, tum_depth_name, write_tum_lists, same_world},

@@ -31,14 +31,14 @@ namespace fusebench::simulator::layouts {
 enum class RecordingLayout { tum, icl, zr300 };
 [[nodiscard]] std::string_view to_string(RecordingLayout layout);
 
-/// Everything of a simulated recording but its images.
+/// All data of a simulated recording except its images.
 struct SimulatedData {
   calibration::RigCalibration rig;
-  std::vector<std::int64_t> frame_ns;  ///< the instants at which the images are taken
-  sensors::ImageStamps color;          ///< what the lists say of them; those that are dropped are left out
-  sensors::ImageStamps depth;          ///< the same of depth; equal to color where a format pairs them
-  bool paired = true;                  ///< the TUM layout lists the pairs as well
-  Trajectory truth;  ///< colour camera in the scene's world: all frames, and poses between them
+  std::vector<std::int64_t> frame_ns;  ///< capture instants of the images
+  sensors::ImageStamps color;          ///< stamps in the lists, without dropped images
+  sensors::ImageStamps depth;          ///< depth stamps; equal to color if the format pairs them
+  bool paired = true;                  ///< the TUM layout also lists the pairs
+  Trajectory truth;  ///< pose of the colour camera in the scene's world: all frames, and poses between them
   sensors::SimulatedImu imu;
   Mesh scene;
 
@@ -47,35 +47,35 @@ struct SimulatedData {
   }
 };
 
-/// One layout: its clock, its names and its lists.
+/// A layout: its clock, file names and lists.
 struct LayoutDescription {
   std::string_view name;
   std::int64_t first_frame_ns;  ///< stamp of frame 0
-  std::int64_t imu_lead_ns;     ///< how long before it the IMU begins
-  std::int64_t tick_ns;         ///< stamps are multiples of it
-  bool has_stamps;              ///< or frames are counted
-  bool separate_lists;          ///< colour and depth have stamps of their own
-  double lowest_rate_hz;        ///< of the images; what readers of the format take
+  std::int64_t imu_lead_ns;     ///< start of the IMU before frame 0
+  std::int64_t tick_ns;         ///< stamps are multiples of this
+  bool has_stamps;              ///< false: frames are numbered
+  bool separate_lists;          ///< colour and depth have separate stamps
+  double lowest_rate_hz;        ///< of the images; limit of the readers of the format
   double highest_rate_hz;
-  sensors::DepthNoise depth_noise;  ///< of the sensor that the layout is known for
+  sensors::DepthNoise depth_noise;  ///< of the typical sensor of the layout
   std::string (*color_name)(std::size_t frame, std::int64_t frame_ns);  ///< relative to the folder
   std::string (*depth_name)(std::size_t frame, std::int64_t frame_ns);
-  /// Lists, IMU and ground truth of the format.
+  /// Writes the lists, the IMU file and the ground truth of the format.
   Result<void> (*write_lists)(const std::filesystem::path& folder, const SimulatedData& data);
-  /// Maps points of the scene's world into the world of scene.ply and of the states (both right-handed).
+  /// Transform from the scene's world to the world of scene.ply and of the states (both right-handed).
   SE3 (*T_file_scene)(const SimulatedData& data);
 
   [[nodiscard]] std::int64_t frame_ns(std::size_t frame, double rate_hz) const;
 };
 [[nodiscard]] const LayoutDescription& describe(RecordingLayout layout);
 
-/// The sensors that a layout is known for, at an image size: the published intrinsics (scaled with the
-/// width), depth in a camera of its own (zr300) or registered to colour, and the IMU of the ZR300. Global
-/// shutters. Error configuration: a size out of range.
+/// The typical sensors of a layout at an image size: published intrinsics (scaled with the width), depth in a
+/// separate camera (zr300) or registered to colour, and the IMU of the ZR300. Global shutters. Error
+/// configuration: a size out of range.
 [[nodiscard]] Result<calibration::RigCalibration> layout_rig(RecordingLayout layout,
                                                              const images::ImageSize& size);
 
-/// Writes everything but the images. Errors: io.
+/// Writes all files except the images. Errors: io.
 [[nodiscard]] Result<void> write_layout(RecordingLayout layout, const std::filesystem::path& folder,
                                         const SimulatedData& data);
 

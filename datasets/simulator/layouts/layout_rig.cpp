@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kZr300 = "zr300_fmdataset";
 
-/// The same field of view in another number of pixels; pixel centres are at integers.
+/// Scales a camera to another number of pixels with the same field of view; pixel centres are at integers.
 void scale_camera(PinholeCamera& camera, const images::ImageSize& size) {
   const double x = static_cast<double>(size.width_px) / camera.width_px;
   const double y = static_cast<double>(size.height_px) / camera.height_px;
@@ -28,7 +28,7 @@ Result<calibration::CalibratedCamera> registered_camera(RecordingLayout layout) 
   auto camera = calibration::parse_camera("freiburg1");
   if (!camera) return camera;
   camera->timing = {};
-  camera->ground_truth_offset_m.setZero();  // the truth of simulations is the camera's
+  camera->ground_truth_offset_m.setZero();  // the ground truth of simulations is that of the camera
   return camera;
 }
 
@@ -53,7 +53,7 @@ Result<calibration::RigCalibration> layout_rig(RecordingLayout layout, const ima
     scale_camera(rig->depth->pinhole, size);
   }
   scale_camera(rig->color.pinhole, size);
-  // What is simulated is known exactly.
+  // Simulated values are exact.
   rig->color.timing = {};
   rig->source = fmt::format("simulated: cameras of the {} layout, IMU of {}", to_string(layout), kZr300);
   return rig;

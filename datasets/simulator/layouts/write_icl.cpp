@@ -10,11 +10,11 @@ namespace fusebench::simulator::layouts {
 
 namespace {
 
-constexpr double kStartOffset_m = -2.25;  // of the published trajectories, along the first camera's axis
+constexpr double kStartOffset_m = -2.25;  // of the published trajectories, along the axis of the first camera
 
 SE3 pose_at(const Trajectory& truth, std::int64_t time_ns) {
   const auto found = std::ranges::lower_bound(truth, time_ns, {}, &StampedPose::timestamp_ns);
-  check(found != truth.end() && found->timestamp_ns == time_ns, "the truth holds every frame");
+  check(found != truth.end() && found->timestamp_ns == time_ns, "the ground truth has every frame");
   return found->T_world_camera;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Seconds with six decimals, as the names of the images have them.
+/// Seconds with six decimals, as in the names of the images.
 std::string stamp(std::int64_t time_ns) {
   return fmt::format("{}.{:06}", time_ns / kSecond_ns, time_ns % kSecond_ns / 1000);
 }

@@ -11,7 +11,7 @@ namespace fusebench::simulator::layouts {
 namespace {
 
 std::int64_t microseconds(std::int64_t time_ns) {
-  return std::llround(static_cast<double>(time_ns) / 1000);  // device clocks start near zero: exact
+  return std::llround(static_cast<double>(time_ns) / 1000);  // exact, since device clocks start near zero
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace fusebench::simulator::motion {
 
 namespace {
 
-constexpr std::int64_t kKnotSpacing_ns = 20'000'000;  // carries the 10 Hz of a tremor
+constexpr std::int64_t kKnotSpacing_ns = 20'000'000;  // resolves the 10 Hz of a tremor
 constexpr std::int64_t kSpeedStep_ns = 5'000'000;
 constexpr double kMaxStartOffset_s = 8;  // search interval for a start in full motion
 
@@ -49,7 +49,7 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
     }
   }
   const double moving_s = seconds_between(span.first_frame_ns, span.last_frame_ns) - options.rest_s;
-  // A recording of 2 s ends a frame before: the motion itself goes on for longer than that.
+  // A recording of 2 s may end one frame earlier, since the motion continues after the last frame.
   if (options.from_rest && moving_s + 1e-9 * static_cast<double>(MotionSpan::kTail_ns) < options.start_s) {
     const double least_s = options.rest_s + options.start_s;
     return fail(
@@ -66,7 +66,7 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
 struct Scale {
   double position_m = 1;
   double angle_rad = 1;
-  double heading_rad = 0;  ///< mean direction of view
+  double heading_rad = 0;  ///< mean viewing direction
 };
 
 SE3 pose_on(const HandPath& path, const MotionOptions& options, const Scale& scale, double path_s) {
@@ -77,8 +77,8 @@ SE3 pose_on(const HandPath& path, const MotionOptions& options, const Scale& sca
           scale.position_m * path.position(path_s) + options.tremor_m * path.tremor(path_s)};
 }
 
-/// The path time from which on a camera moves and turns at once: where the smaller of both speeds, as parts
-/// of their maxima, is largest.
+/// Path time at which the camera moves and rotates at once: the maximum of the smaller of both speeds,
+/// relative to their peaks.
 double full_motion_s(const HandPath& path) {
   constexpr double kStep_s = 0.05;
   const auto speeds = [&](double path_s) {
@@ -107,15 +107,15 @@ PathClock clock_for(const MotionOptions& options, const MotionSpan& span, const 
     clock.still_until_s = seconds_between(span.begin_ns, span.first_frame_ns) + options.rest_s;
     clock.start_s = options.start_s;
   } else {
-    // The first frame shall be in full motion; the IMU's lead lies before it on the path.
+    // The first frame should be in full motion; the lead of the IMU is before it on the path.
     clock.offset_s = full_motion_s(path) - seconds_between(span.begin_ns, span.first_frame_ns);
   }
   return clock;
 }
 
-/// Scales until both peaks are met: positions are linear in their scale but for the tremor, angular velocity
-/// in the angles' only for small ones, so a few rounds are needed. Error configuration: they are not met
-/// within 1 % (by a tremor that is faster than the peak, say).
+/// Scales the path until both peaks are reached. Positions are linear in their scale except for the tremor,
+/// angular velocity is linear in the angles only for small ones, so a few rounds are needed. Error
+/// configuration: the peaks are not reached within 1 % (for example with a tremor faster than the peak).
 Result<synthetic_imu::PoseSpline> scaled_motion(const HandPath& path, const MotionOptions& options,
                                                 const MotionSpan& span, double heading_rad) {
   constexpr int kMaxRounds = 30;
@@ -153,17 +153,17 @@ Vector3d mean_forward(const synthetic_imu::PoseSpline& spline) {
   return forward;
 }
 
-/// The heading of a path, and the weights of its speeds along the axes of the world.
+/// Heading of a path and weights of its speeds along the world axes.
 struct View {
   double heading_rad = 0;
   std::array<double, 3> weight = HandPath::kDefaultAxisWeights;
 };
 
-/// unturned: the motion with the path's own heading.
+/// unturned: motion with the original heading of the path.
 View choose_view(const HandPath& path, const MotionOptions& options,
                  const synthetic_imu::PoseSpline& unturned, const HeadingTexture& texture) {
   const double best_rad = path.mean_yaw_rad() + texture.best_turn_rad(unturned);
-  // Angles are sums of sines, whose mean over a short recording is not zero.
+  // Angles are sums of sines with a non-zero mean over a short recording.
   const double lean_rad = heading_of(mean_forward(unturned)) - path.mean_yaw_rad();
   if (!options.sideways) {
     if (!texture.face_rad) return {best_rad};
@@ -179,16 +179,16 @@ View choose_view(const HandPath& path, const MotionOptions& options,
           along_x ? std::array{kForward, 1.0, kUp} : std::array{1.0, kForward, kUp}};
 }
 
-/// Of the control points, whose hull holds the spline.
+/// Bounding box of the control points, which contains the spline.
 Eigen::AlignedBox3d extent_of(const synthetic_imu::PoseSpline& spline) {
   Eigen::AlignedBox3d extent;
   for (const Vector3d& point : spline.position_world_m) extent.extend(point);
   return extent;
 }
 
-/// Where the middle of the path goes: from the middle of the box towards what the camera looks at on average,
-/// most of what room there is, so that surfaces are near enough for depth cameras. The height is that of the
-/// middle.
+/// Position of the middle of the path: the middle of the box, moved towards the mean viewing direction by
+/// most of the available space, so that surfaces are close enough for depth cameras. The height is that of
+/// the middle.
 Vector3d middle_of_path(const synthetic_imu::PoseSpline& spline, const Eigen::AlignedBox3d& box,
                         const Vector3d& size_m) {
   constexpr double kShare = 0.6;
@@ -204,7 +204,7 @@ double PathClock::path_s(double since_begin_s) const {
   const double moving_s = since_begin_s - still_until_s;
   if (start_s <= 0) return offset_s + rate * moving_s;
   if (moving_s <= 0) return offset_s;
-  // The rate rises as u^2 (3 - 2u), so that the acceleration is continuous at both ends.
+  // The rate increases as u^2 (3 - 2u), so the acceleration is continuous at both ends.
   const double u = std::min(moving_s / start_s, 1.0);
   const double started_s = start_s * u * u * u * (1 - 0.5 * u);
   return offset_s + rate * (started_s + std::max(moving_s - start_s, 0.0));
@@ -270,7 +270,7 @@ Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
       for (Vector3d& point : spline->position_world_m) point += shift;
       return spline;
     }
-    // The same speed within less space: reverse sooner along the axes that are too long.
+    // Same speed in less space: higher frequency along the axes that are too long.
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       if (size_m[axis] > room_m[axis]) stretch[axis] *= 1.15;
     }

@@ -20,15 +20,15 @@ namespace fusebench::simulator::motion {
 namespace {
 
 constexpr double kIclRate_hz = 30;
-// ICL-NUIM's paths are estimates of a hand-held camera that jump by millimetres from frame to frame. Hand
-// motion ends at about 3 Hz; what is above would shake the camera with accelerations of several g.
+// ICL-NUIM's paths are estimates of a hand-held camera with jumps of millimetres between frames. Hand motion
+// ends at about 3 Hz; higher frequencies would give accelerations of several g.
 constexpr double kIclCutoff_hz = 3;
-constexpr double kMost_m = 1e7;       // as of recordings: beyond it, squares of distances are no numbers
-constexpr double kFitMargin_s = 0.5;  // beyond what is needed, since a fit is less accurate at its ends
+constexpr double kMost_m = 1e7;       // limit of recordings: squares of larger distances overflow
+constexpr double kFitMargin_s = 0.5;  // extra length, since a fit is less accurate at its ends
 
 constexpr std::string_view kMatrixColumns = "index r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz";
 
-/// ICL-NUIM's poses as a camera of this project in a world with z up.
+/// Converts a pose of ICL-NUIM to a camera of this project in a world with z up.
 SE3 from_icl(const SE3& T_icl) {
   static const Quaterniond kUpright((Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished());  // y down to z up
   return SE3{kUpright, Vector3d::Zero()} * formats::icl::icl_reflect(T_icl);
@@ -77,7 +77,7 @@ void start_at_zero(Trajectory& poses) {
   for (StampedPose& pose : poses) pose.timestamp_ns -= first_ns;
 }
 
-/// Indices were read as seconds.
+/// Converts indices, read as seconds, to frame times.
 void take_indices_as_frames(Trajectory& poses) {
   for (StampedPose& pose : poses) {
     pose.timestamp_ns = std::llround(static_cast<double>(pose.timestamp_ns) / kIclRate_hz);
@@ -96,7 +96,7 @@ PathClock clock_for(const FileMotionOptions& options, double lead_s) {
   return clock;
 }
 
-/// The part of the path that a span needs, as a spline by path time.
+/// The part of the path that a span requires, as a spline by path time.
 Result<synthetic_imu::PoseSpline> smooth_path(const FilePath& path, double needed_s) {
   Trajectory part;
   for (const StampedPose& pose : path.poses) {
@@ -104,7 +104,7 @@ Result<synthetic_imu::PoseSpline> smooth_path(const FilePath& path, double neede
   }
   synthetic_imu::SplineFitOptions fit;
   fit.cutoff_hz = path.cutoff_hz;
-  // A path is taken as it is: its jitter is no outlier.
+  // The jitter of a path is not treated as outliers.
   fit.outlier_position_m = 0.1;
   fit.outlier_rotation_rad = 0.1;
   auto fitted = synthetic_imu::fit_pose_spline(part, fit);
@@ -119,13 +119,13 @@ Eigen::AlignedBox3d extent_of(const synthetic_imu::PoseSpline& spline, double he
   return extent;
 }
 
-/// Scale factor for the path to fit at a heading; 1: unchanged.
+/// Scale factor with which the path fits at a heading; 1: unchanged.
 double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d& box, double heading_rad) {
   const Vector3d size_m = extent_of(camera, heading_rad).sizes();
   return std::min(1.0, box.sizes().cwiseQuotient(size_m.cwiseMax(1e-9)).minCoeff());
 }
 
-/// Rotates, scales down if necessary, and moves the path into the box.
+/// Rotates the path, scales it down if necessary, and moves it into the box.
 void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
   constexpr int kHeadings = 36;
   motion.heading_rad = texture.best_turn_rad(motion.camera);
@@ -197,7 +197,7 @@ Result<void> check_file_motion(const FileMotionOptions& options) {
 
 double longest_duration_s(const FilePath& path, const FileMotionOptions& options, double lead_s) {
   const double moving_s = (path.length_s() - options.skip_s) / options.speed;
-  // A start covers half of the path that its time would.
+  // A smooth start covers half the path of its duration.
   const double before_s = options.from_rest ? -options.rest_s - 0.5 * options.start_s : lead_s;
   return moving_s - before_s - seconds_between(0, MotionSpan::kTail_ns);
 }

@@ -22,10 +22,10 @@
 
 namespace fusebench::simulator::motion {
 
-/// The poses of a trajectory file in a world with z up, by path time (the first pose is at 0).
+/// Poses of a trajectory file in a world with z up, by path time (the first pose is at 0).
 struct FilePath {
   Trajectory poses;       ///< T_world_camera
-  double cutoff_hz = 12;  ///< what is above it in the poses is taken for noise
+  double cutoff_hz = 12;  ///< higher frequencies of the poses are treated as noise
   std::vector<std::string> warnings;
 
   [[nodiscard]] double length_s() const {
@@ -37,12 +37,12 @@ struct FilePath {
 [[nodiscard]] Result<FilePath> read_file_path(const std::filesystem::path& file);
 
 struct FileMotionOptions {
-  double speed = 1;        ///< path seconds a second: 2 drives it twice as fast
-  double skip_s = 0;       ///< of the path, left out at its beginning
-  bool from_rest = false;  ///< hold the first pose, then start smoothly; otherwise as the path begins
+  double speed = 1;        ///< path seconds per second: 2 is twice as fast
+  double skip_s = 0;       ///< skipped at the start of the path
+  bool from_rest = false;  ///< hold the first pose, then start smoothly; otherwise start as the path does
   double rest_s = 1.0;     ///< as in MotionOptions
   double start_s = 1.0;
-  bool in_place = false;  ///< the poses are in the scene's world already: neither moved, turned nor shrunk
+  bool in_place = false;  ///< poses are already in the scene's world and are not changed
 };
 
 /// Errors: configuration (speed, rest_s or start_s out of range).
@@ -50,16 +50,16 @@ struct FileMotionOptions {
 
 struct FileMotion {
   synthetic_imu::PoseSpline camera;  ///< T_world_camera, world z up
-  double shrunk = 1;  ///< factor on the positions, so that the path stays in the box; 1: it fits as it is
-  double heading_rad = 0;  ///< by which it was turned about the vertical
+  double shrunk = 1;       ///< scale factor of the positions that keeps the path in the box; 1: unchanged
+  double heading_rad = 0;  ///< rotation about the vertical
 };
 
-/// How long a recording along the path can be, from its first frame on. The options must be in range.
+/// Longest duration of a recording along the path, from its first frame on. The options must be in range.
 [[nodiscard]] double longest_duration_s(const FilePath& path, const FileMotionOptions& options,
                                         double lead_s);
 
-/// Unless it is in place, puts the middle of the path's extent into the middle of the box, turned about the
-/// vertical as it fits best. Errors: configuration (an option out of range; a span longer than the path),
+/// Unless in_place, moves the middle of the path's extent to the middle of the box, with the best rotation
+/// about the vertical. Errors: configuration (an option out of range; a span longer than the path),
 /// data_corrupt (the fit failed).
 [[nodiscard]] Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& options,
                                              const MotionSpan& span, const Eigen::AlignedBox3d& box,

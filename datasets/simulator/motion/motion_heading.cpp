@@ -13,9 +13,9 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStep_rad = kTurn / HeadingTexture::kHeadings;
 constexpr PinholeCamera kViewer = {96, 72, 90, 90, 47.5, 35.5};
 constexpr int kCell_px = 8;
-constexpr float kEdge = 6.0F / 255.0F;  // between neighbours: above the noise of a sensor
+constexpr float kEdge = 6.0F / 255.0F;  // difference of neighbours above the noise of a sensor
 
-/// Brightness as it is encoded, nearly: differences of light count more in the dark.
+/// Approximate encoded brightness: differences of light count more in the dark.
 float brightness(const Eigen::Vector3f& light) { return std::sqrt(std::max(0.0F, light.mean())); }
 
 bool holds_edge(const Image<Eigen::Vector3f>& light, int left, int top) {

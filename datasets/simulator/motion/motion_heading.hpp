@@ -1,4 +1,4 @@
-// Choice of a heading with texture: hand-held cameras are rarely pointed at a blank wall.
+// Selects a heading with texture, since hand-held cameras rarely point at a blank wall.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,29 +12,27 @@
 
 namespace fusebench::simulator::motion {
 
-/// Amount of texture in view of a level camera, by heading (about world z, 0 looks along x). A default one is
-/// the same everywhere, so that nothing is preferred.
+/// Amount of texture in the view of a level camera by heading (about world z, 0 is along x). The default is
+/// uniform, so no heading is preferred.
 struct HeadingTexture {
   static constexpr std::size_t kHeadings = 24;
 
-  std::array<double, kHeadings>
-      share{};                     ///< of the image's cells that hold an edge, 0 to 1, every 15 degrees
-  std::optional<double> only_rad;  ///< the one heading that is worth looking at; empty: by the texture
-  std::optional<double>
-      face_rad;  ///< the mean heading, where a scene has a side to face; empty: by the texture
+  std::array<double, kHeadings> share{};  ///< share of image cells with an edge, 0 to 1, every 15 degrees
+  std::optional<double> only_rad;         ///< the only useful heading; empty: by the texture
+  std::optional<double> face_rad;  ///< mean heading, if the scene has a main side; empty: by the texture
 
   [[nodiscard]] double at(double heading_rad) const;  ///< interpolated, periodic
 
-  /// The turn about the vertical, of a motion of a camera (T_world_camera), for which the tenth of the time
-  /// with the least texture has the most of it; 0 if none is better.
+  /// Rotation about the vertical that maximises the texture of the worst tenth of the motion
+  /// (T_world_camera); 0 if none is better.
   [[nodiscard]] double best_turn_rad(const synthetic_imu::PoseSpline& camera) const;
 };
 
-/// Looks around from the middle of the box.
+/// Measures the texture around the middle of the box.
 [[nodiscard]] HeadingTexture look_around(const render::Renderer& renderer, const Eigen::AlignedBox3d& box,
                                          const Workers& workers);
 
-/// Camera axes (x right, y down, z forward) that look along a heading, raised by the pitch; world z up.
+/// Camera axes (x right, y down, z forward) for a heading and an upward pitch; world z up.
 [[nodiscard]] Quaterniond looking(double heading_rad, double pitch_rad, double roll_rad);
 
 }  // namespace fusebench::simulator::motion

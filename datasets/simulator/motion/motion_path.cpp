@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kSines =
-    4;  // enough for an irregular motion; with more, speeds approach a normal distribution
+    4;  // sufficient for an irregular motion; with more, speeds approach a normal distribution
 
-// Hand-held cameras turn mostly about the vertical.
+// Hand-held cameras rotate mostly about the vertical.
 constexpr std::array<double, 3> kAngleWeight = {1.0, 0.35, 0.2};
 // Shaking has no preferred axis.
 constexpr std::array<double, 3> kShakePositionWeight = {0.8, 0.8, 1.0};
@@ -22,9 +22,9 @@ constexpr std::array<double, 3> kShakeAngleWeight = {1.0, 1.0, 0.6};
 
 constexpr double kShakeBursts_hz = 0.35;
 constexpr std::uint64_t kPurpose =
-    0x6D6F74696F6EULL;  // key of a random stream independent of those of rooms and images
+    0x6D6F74696F6EULL;  // key of a random stream independent of rooms and images
 
-// Names of the streams of random numbers: three axes each, three values a sine.
+// Random streams: three axes each, three values for each sine.
 enum Stream : std::uint64_t {
   position = 0,
   angle = 10,
@@ -44,12 +44,12 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
     return low + (high - low) * random::unit_interval(random::mix_key(
                                     random::mix_key(random::mix_key(seed, kPurpose), stream), index));
   };
-  // Every sine has the same share of the velocity, so that no frequency of the band dominates it.
+  // All sines have the same share of the velocity, so no frequency dominates.
   const auto sines = [&](std::uint64_t stream, const FrequencyBand& band, double weight, double period_s) {
     Sines result;
     const double ratio = band.high_hz / band.low_hz;
     for (std::size_t i = 0; i < kSines; ++i) {
-      // One frequency in each quarter of the band, on a logarithmic scale.
+      // One frequency in each quarter of the band (logarithmic).
       const double within = (static_cast<double>(i) + random(stream, 2 * i, 0, 1)) / kSines;
       double rate_radps = kTurn * band.low_hz * std::pow(ratio, within);
       if (period_s > 0)
@@ -81,10 +81,10 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
     Pan next;
     next.begin_s = time_s + random(SingleStream::pan_pause, i, pans.pause_s[0], pans.pause_s[1]);
     next.duration_s = random(SingleStream::pan_duration, i, pans.duration_s[0], pans.duration_s[1]);
-    // The peak of the angular velocity is 15/8 of the mean one.
+    // The peak angular velocity is 15/8 of the mean.
     const double size =
         random(SingleStream::pan_angle, i, pans.rate[0], pans.rate[1]) * next.duration_s * 8 / 15;
-    // Back towards the middle, so that pans swing instead of adding up.
+    // Pans return towards the middle, so they do not add up.
     next.angle = yaw > 0 ? -size : size;
     yaw += next.angle;
     time_s = next.begin_s + next.duration_s;

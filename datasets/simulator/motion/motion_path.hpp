@@ -1,4 +1,4 @@
-// The shape of a hand-held path before it is scaled to its speeds: sums of sines, pans and shaking.
+// Shape of a hand-held path before it is scaled to its speeds: sums of sines, pans and shaking.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace fusebench::simulator::motion {
 
-/// Functions of path time without a scale: their speeds are of the order of one unit a second.
+/// Unscaled functions of path time, with speeds of about one unit per second.
 class HandPath {
  public:
-  /// Mostly in the horizontal plane, as hands move.
+  /// Mostly in the horizontal plane, as for a hand.
   static constexpr std::array<double, 3> kDefaultAxisWeights = {1.0, 1.0, 0.35};
 
-  /// stretch: factors on the frequencies of the three axes of the position; weight: on its speeds. Pans last
+  /// stretch: factors on the frequencies of the position by axis; weight: factors on its speeds. Pans last
   /// until length_s.
   HandPath(const MotionOptions& options, std::uint64_t seed, const Vector3d& stretch, double length_s,
            const std::array<double, 3>& weight = kDefaultAxisWeights);
 
   [[nodiscard]] Vector3d position(double path_s) const;
-  [[nodiscard]] Vector3d angles(double path_s) const;  ///< yaw, pitch, roll about their means
-  [[nodiscard]] Vector3d tremor(double path_s) const;  ///< amplitude of the order of one
+  [[nodiscard]] Vector3d angles(double path_s) const;  ///< yaw, pitch, roll relative to their means
+  [[nodiscard]] Vector3d tremor(double path_s) const;  ///< amplitude of about one
   [[nodiscard]] Vector3d angle_tremor(double path_s) const;
   [[nodiscard]] double mean_yaw_rad() const { return mean_yaw_rad_; }
 
@@ -34,7 +34,7 @@ class HandPath {
     double phase_rad = 0;
   };
   using Sines = std::vector<Sine>;
-  /// A turn of the head: the smoothest one (least jerk) from rest to rest.
+  /// A minimum-jerk rotation from rest to rest.
   struct Pan {
     double begin_s = 0;
     double duration_s = 0;

@@ -13,7 +13,7 @@ struct PresetDescription {
   double usual_duration_s = 10;
 };
 
-// In the order of the enumeration. Durations of routes let them come to their end.
+// In the order of the enumeration. The durations of routes cover the whole route.
 constexpr std::array<PresetDescription, 13> kPresets = {
     {{MotionPreset::slow, "slow"},
      {MotionPreset::fast, "fast"},
@@ -59,7 +59,7 @@ MotionOptions sweeping_motion() {
   return options;
 }
 
-/// With the tremor of a hand that holds something: 5 to 10 Hz, some tenths of a millimetre and of a degree.
+/// With the tremor of a hand that holds an object: 5 to 10 Hz, some tenths of a millimetre and of a degree.
 MotionOptions trembling_motion() {
   MotionOptions options;
   options.tremor_m = 3e-4;

@@ -6,7 +6,7 @@ namespace fusebench::simulator::random {
 
 namespace {
 
-/// The number that a standard normal variable stays below with this probability, by bisection.
+/// Quantile of the standard normal distribution, by bisection.
 double normal_quantile(double probability) {
   double low = -9;
   double high = 9;

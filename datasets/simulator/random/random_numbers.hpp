@@ -1,5 +1,5 @@
-// Random numbers that are a function of what they are for (seed, frame, pixel), not of the order in which
-// they are drawn: the same for any number of threads and any standard library.
+// Counter-based random numbers: a function of their purpose (seed, frame, pixel), not of the order of
+// drawing. Identical for any number of threads and any standard library.
 #pragma once
 
 #include <array>
@@ -8,8 +8,7 @@
 
 namespace fusebench::simulator::random {
 
-/// The finaliser of SplitMix64 (Steele et al., OOPSLA 2014): every bit of the input moves every bit of the
-/// output.
+/// Finaliser of SplitMix64 (Steele et al., OOPSLA 2014): each input bit affects all output bits.
 [[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,8 +16,7 @@ namespace fusebench::simulator::random {
   return x ^ (x >> 31);
 }
 
-/// 64 random bits for a counter under a key. Keys are made by nesting: mix_key(mix_key(seed, frame),
-/// purpose).
+/// 64 random bits for a counter under a key. Keys are nested: mix_key(mix_key(seed, frame), purpose).
 [[nodiscard]] constexpr std::uint64_t mix_key(std::uint64_t key, std::uint64_t counter) {
   return mix_bits(key ^ mix_bits(counter));
 }
@@ -28,14 +26,14 @@ namespace fusebench::simulator::random {
   return 0x1p-53 * static_cast<double>(bits >> 11);
 }
 
-/// Draws one after the other under a key, for what is built in a fixed order (a room).
+/// Sequential numbers under a key, for data that is built in a fixed order (a room).
 class RandomSequence {
  public:
   explicit RandomSequence(std::uint64_t key) : key_(key) {}
 
   [[nodiscard]] std::uint64_t bits() { return mix_key(key_, counter_++); }
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * unit_interval(bits()); }
-  /// 0 to count - 1.
+  /// Uniform integer, 0 to count - 1.
   [[nodiscard]] int below(int count) { return static_cast<int>(uniform(0, count)); }
 
  private:
@@ -43,8 +41,8 @@ class RandomSequence {
   std::uint64_t counter_ = 0;
 };
 
-/// Standard normal numbers by the inverse of the distribution function, from a table: the tails end at 3.9
-/// standard deviations, the standard deviation is 1 within 1e-3.
+/// Standard normal numbers by the tabulated inverse distribution function: tails end at 3.9 standard
+/// deviations, the standard deviation is 1 within 1e-3.
 class NormalTable {
  public:
   static const NormalTable& instance();

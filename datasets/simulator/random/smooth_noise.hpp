@@ -1,4 +1,4 @@
-// A field of random numbers that is smooth over the image.
+// Smooth random field over an image.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace fusebench::simulator::random {
 
-/// Standard normal at every pixel, and smooth over spacing_px (at least 1): bilinear between independent
-/// values, scaled by the root of the sum of the squared weights.
+/// Standard normal at each pixel, smooth over spacing_px (at least 1): bilinear interpolation of independent
+/// values, divided by the root of the sum of squared weights.
 class SmoothNoise {
  public:
   SmoothNoise(std::uint64_t key, int spacing_px) : key_(key), spacing_px_(spacing_px) {
@@ -24,7 +24,7 @@ class SmoothNoise {
     }
   }
 
-  /// The values of row v (from 0 on), at columns 0 to size - 1.
+  /// Values of row v (from 0 on), columns 0 to size - 1.
   void row(int v, std::span<float> values) const {
     const int knot_row = v / spacing_px_;
     const Weights down = weights_[static_cast<std::size_t>(v % spacing_px_)];

@@ -20,9 +20,8 @@ namespace {
 constexpr std::size_t kLanes = 8;
 using Lanes = Eigen::Array<float, kLanes, 1>;
 
-/// The instruction set decides which rays hit exactly on an edge, so it is fixed rather than taken from the
-/// machine. "threads" is not set: Embree would limit oneTBB for the whole program for as long as the device
-/// lives.
+/// The instruction set is fixed, since it affects which rays hit an edge. "threads" is not set: Embree would
+/// limit oneTBB for the whole program during the life of the device.
 constexpr const char* kDeviceConfiguration = "isa=avx2,start_threads=0,set_affinity=0";
 
 struct Triangle {
@@ -41,14 +40,13 @@ std::vector<Triangle> triangles_of(const Mesh& mesh) {
   return triangles;
 }
 
-/// Where a ray meets the plane of a triangle that it is known to hit (Moeller and Trumbore 1997). Embree's
-/// own numbers come from the CPU's approximate reciprocals, which differ from vendor to vendor in their last
-/// bits.
+/// Intersection with the plane of a triangle that Embree reported as hit (Moeller and Trumbore 1997).
+/// Embree's own values use approximate reciprocals, whose last bits differ between CPU vendors.
 RayHit hit_on(const Triangle& triangle, std::uint32_t index, const Eigen::Vector3d& origin,
               const Eigen::Vector3d& direction) {
   const Eigen::Vector3d across = direction.cross(triangle.to_third);
   const double volume = triangle.to_second.dot(across);
-  if (volume == 0) return {};  // the ray lies in the plane
+  if (volume == 0) return {};  // the ray is in the plane
   const Eigen::Vector3d from_corner = origin - triangle.corner;
   const Eigen::Vector3d lift = from_corner.cross(triangle.to_second);
   const double u = std::clamp(from_corner.dot(across) / volume, 0.0, 1.0);
@@ -76,11 +74,12 @@ struct RayCaster::State {
 
 namespace {
 
-/// Embree returns nothing where it fails, and keeps why; of no device (nullptr) for the thread. Too little
-/// memory is no bug.
+/// Reports an Embree failure, stored in the device (nullptr: in the thread). Insufficient memory is not a
+/// bug.
 void check_embree(RTCDevice device, bool worked, const char* claim) {
   RTCError error = rtcGetDeviceError(device);
-  // To ask takes memory: where there is none, the answer is "unknown", and the next one tells why.
+  // The query itself allocates memory. If that fails, it returns "unknown", and the next query returns the
+  // reason.
   if (error == RTC_ERROR_UNKNOWN) error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   check(worked && error == RTC_ERROR_NONE, claim);
@@ -95,7 +94,7 @@ RayCaster::RayCaster(const Mesh& mesh) : state_(std::make_unique<State>()) {
                "Embree needs a CPU with AVX2, as this program does");
   state_->scene = rtcNewScene(state_->device);
   check_embree(state_->device, state_->scene != nullptr, "Embree made a scene");
-  rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks between neighbouring triangles
+  rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);  // no gaps between neighbouring triangles
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_MEDIUM);
   const RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   check_embree(state_->device, geometry != nullptr, "Embree made a geometry");
@@ -111,8 +110,8 @@ RayCaster::RayCaster(const Mesh& mesh) : state_(std::make_unique<State>()) {
   rtcReleaseGeometry(geometry);
   check_embree(state_->device, true, "Embree took the geometry");
   {
-    // The order of the triangles within a leaf, and with it which of two that share an edge is hit, must not
-    // depend on the number of threads.
+    // The order of triangles within a leaf determines which of two triangles with a common edge is hit. It
+    // must not depend on the number of threads.
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     rtcCommitScene(state_->scene);
   }

@@ -16,14 +16,14 @@ namespace fusebench::simulator::rays {
 struct RayHit {
   static constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
 
-  float distance = 0;  ///< in lengths of the direction
+  float distance = 0;  ///< in units of the direction's length
   float u = 0;         ///< barycentric: point = (1 - u - v) a + u b + v c
   float v = 0;
-  float cos_incidence = 0;  ///< of the angle between ray and surface normal, 0 to 1 (either side)
+  float cos_incidence = 0;  ///< cosine of the angle between ray and surface normal, 0 to 1 (either side)
   std::uint32_t triangle = kNothing;
 };
 
-/// Triangles are solid from both sides. Copies what it needs of the mesh; calls may run at once.
+/// Triangles are hit from both sides. Copies the required data of the mesh; thread-safe.
 class RayCaster {
  public:
   explicit RayCaster(const Mesh& mesh);
@@ -31,21 +31,21 @@ class RayCaster {
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
 
-  /// Rays from one origin along directions (any length); one hit each. The three spans and hits have the same
-  /// length.
+  /// Casts rays from one origin along directions of any length; one hit each. The three spans and hits have
+  /// the same length.
   void cast(const Eigen::Vector3f& origin, std::span<const float> x, std::span<const float> y,
             std::span<const float> z, std::span<RayHit> hits) const;
 
-  /// Rays with an origin each. The spans have the same length.
+  /// Rays with individual origins. The spans have the same length.
   struct Rays {
     std::array<std::span<const float>, 3> origin;
     std::array<std::span<const float>, 3> direction;
   };
-  /// The nearest triangle of each ray, RayHit::kNothing where there is none. Fast where eight rays that
-  /// follow each other are close together.
+  /// Nearest triangle of each ray, RayHit::kNothing if there is none. Fast if groups of eight consecutive
+  /// rays are close together.
   void nearest_triangles(const Rays& rays, std::span<std::uint32_t> triangles) const;
 
-  /// Whether anything lies between origin and origin + direction.
+  /// True if there is a surface between origin and origin + direction.
   [[nodiscard]] bool blocked(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
 
  private:

@@ -4,7 +4,7 @@ namespace fusebench::simulator::rays {
 
 namespace {
 
-/// Bilinear within each pixel of row v: at fractions fx and fy of its corners.
+/// Bilinear interpolation within each pixel of row v, at fractions fx and fy.
 void interpolate_row(const Image<float>& corners, int v, float fx, float fy, std::span<float> values) {
   const float* above = &corners(0, v);
   const float* below = &corners(0, v + 1);

@@ -1,4 +1,4 @@
-// The directions in which the pixels of a camera look.
+// Ray directions of the pixels of a camera.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace fusebench::simulator::rays {
 
-/// Directions on the plane z = 1 of the camera. With distortion they are solved for at the corners between
-/// pixels and interpolated within a pixel (the error is below 1e-4 pixels for the calibrations in use), so an
-/// image is taken along the distorted rays instead of being resampled.
+/// Directions on the plane z = 1 of the camera. With distortion, they are solved at the corners between
+/// pixels and interpolated (error below 1e-4 pixels for the calibrations in use). Images are rendered along
+/// the distorted rays instead of being resampled.
 class RayField {
  public:
   explicit RayField(const PinholeCamera& camera) : camera_(camera) {}
@@ -20,13 +20,13 @@ class RayField {
 
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
 
-  /// x and y of the directions of row v, at (u + offset.x, v + offset.y); offsets within half a pixel where
-  /// there is distortion. The spans have the camera's width.
+  /// x and y of the directions of row v at (u + offset.x, v + offset.y); with distortion, offsets are within
+  /// half a pixel. The spans have the width of the camera.
   void row(int v, const Vector2d& offset_px, std::span<float> x, std::span<float> y) const;
 
  private:
   PinholeCamera camera_;
-  Image<float> corners_x_;  // these two: (width + 1) x (height + 1); empty without distortion
+  Image<float> corners_x_;  // as corners_y_: (width + 1) x (height + 1); empty without distortion
   Image<float> corners_y_;
 };
 

@@ -1,4 +1,4 @@
-// A scene as a renderer keeps it: for finding triangles, for hits on known triangles, for their light.
+// Scene data of a renderer: triangle search, hits on given triangles, light.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,7 @@
 
 namespace fusebench::simulator::render {
 
-/// What rays meet, and the light that it sends.
+/// Geometry and its emitted light.
 struct LitScene {
   rays::RayCaster caster;
   TrianglePlanes planes;
@@ -21,7 +21,7 @@ struct LitScene {
   explicit LitScene(const scene::SimulatedScene& scene)
       : caster(scene.mesh), planes(scene.mesh, scene.triangle_textures), shading(scene) {}
 
-  /// Where rays meet triangles that they are known to hit (-1: nothing).
+  /// Intersections of rays with given triangles (-1: nothing).
   [[nodiscard]] PacketHits meet(simd::Int8 triangles, const RayPacket& rays) const {
     PacketHits hits;
     for_each_value(triangles, simd::lane_bits(triangles >= 0), [&](std::int32_t triangle, simd::Int8 same) {
@@ -33,7 +33,7 @@ struct LitScene {
     return hits;
   }
 
-  /// The nearest hits, by packet.
+  /// Nearest hits by packet.
   [[nodiscard]] std::vector<PacketHits> trace(const RayList& rays) const {
     std::vector<std::uint32_t> triangles(rays.size());
     caster.nearest_triangles(rays.rays(), triangles);
@@ -47,7 +47,7 @@ struct LitScene {
     return hits;
   }
 
-  /// Of hits in the given lanes; see SurfaceShading::light_of().
+  /// Light of hits in the given lanes; see SurfaceShading::light_of().
   [[nodiscard]] texture::Texture::Samples light_of(const PacketHits& hits, const RayPacket& rays,
                                                    unsigned lanes, simd::Float8 footprint,
                                                    simd::Int8 page) const {

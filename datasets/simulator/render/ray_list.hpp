@@ -1,4 +1,4 @@
-// Rays of a camera, eight at a time, and lists of them that are traced together.
+// Camera rays in packets of eight, and lists of rays.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ inline std::size_t whole_packets(std::size_t count) {
   return (count + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
 }
 
-/// Directions of a row of pixels on the plane z = 1 of the camera, filled up to whole packets.
+/// Directions of a row of pixels on the plane z = 1, padded to whole packets.
 struct CameraRow {
   std::vector<float> x;
   std::vector<float> y;
@@ -41,7 +41,7 @@ struct CameraRow {
   }
 };
 
-/// Where a camera is, in single precision.
+/// Camera pose in single precision.
 struct CameraPose {
   Eigen::Matrix3f R;
   Eigen::Vector3f t;
@@ -55,7 +55,7 @@ struct CameraPose {
   }
 };
 
-/// Rays that are traced together, in whole packets.
+/// A list of rays in whole packets.
 class RayList {
  public:
   explicit RayList(std::size_t count) : size_(whole_packets(count)) {
@@ -72,7 +72,7 @@ class RayList {
       values_[k + 3][i] = direction[static_cast<Eigen::Index>(k)];
     }
   }
-  /// Copies the ray before i into i and those behind it.
+  /// Copies ray i - 1 to i and to the rays after it.
   void repeat_from(std::size_t i) {
     for (auto& values : values_)
       std::fill(values.begin() + static_cast<std::ptrdiff_t>(i), values.end(), values[i - 1]);
@@ -91,7 +91,7 @@ class RayList {
   std::array<std::vector<float>, 6> values_;  // origin, direction
 };
 
-/// Rays through the middles of a row of pixels.
+/// Rays through the centres of a row of pixels.
 [[nodiscard]] inline RayList rays_of_row(const rays::RayField& field, int row, const SE3& T_world_camera) {
   const CameraRow camera(field, row, Vector2d::Zero());
   const CameraPose pose(T_world_camera);

@@ -16,7 +16,7 @@ using simd::kLanes;
 
 namespace {
 
-/// Eight pixels of a row from column `begin` on; those beyond its end are of the next row, or 0.
+/// Eight pixels of a row from column `begin` on; lanes beyond its end have arbitrary values.
 Float8 load_row(const Image<float>& image, int row, std::size_t begin) {
   Float8 lanes{};
   const std::size_t at = image.index(0, row) + begin;
@@ -24,8 +24,8 @@ Float8 load_row(const Image<float>& image, int row, std::size_t begin) {
   return lanes;
 }
 
-/// The samples of a row. Rays near which other rays met a triangle are tried with that one; the rest are
-/// traced at the end, those of a pixel together.
+/// Accumulates the samples of a row. A ray is first tested against the triangle of a nearby hit; the others
+/// are traced at the end, grouped by pixel.
 class RowLight {
  public:
   RowLight(const LitScene& scene, const rays::RayField& field, std::span<const RowSample> samples,
@@ -48,7 +48,7 @@ class RowLight {
   }
 
  private:
-  /// A ray that is still to be traced.
+  /// A ray to be traced.
   struct Left {
     std::uint32_t pixel;  ///< column
     std::uint32_t sample;
@@ -80,8 +80,8 @@ class RowLight {
     }
   }
 
-  /// Hits of rays that land inside a face, on triangles of that face that one of the eight landed on. A
-  /// nearer surface would be where the ray lands by the depth of the nearest one around.
+  /// Tests rays that project into the interior of a face against the triangles of that face nearby. A nearer
+  /// surface would project there at the depth of the nearest surface around.
   [[nodiscard]] PacketHits try_nearby(const RowSample& sample, const CameraPose& to_nearby,
                                       const CameraRow& rays, const CameraRow& middles, const RayPacket& world,
                                       std::size_t begin) const {
@@ -106,8 +106,8 @@ class RowLight {
     return hits;
   }
 
-  /// Index of the pixel nearby that looks at the point of a ray with this inverse depth. directions: in the
-  /// frame of the camera nearby, to which t_nearby moves the ray's camera.
+  /// Index of the nearby image's pixel that shows the point of a ray with this inverse depth. directions: in
+  /// the frame of the nearby camera; t_nearby: translation to that frame.
   [[nodiscard]] Int8 pixel_of(const RowSample& sample, const Eigen::Vector3f& t_nearby,
                               const simd::Points& directions, Float8 inverse_depth,
                               const simd::Points& middles, std::size_t begin) const {
@@ -115,7 +115,7 @@ class RowLight {
     const simd::Points moved{simd::multiply_add(t_nearby.x(), inverse_depth, directions.x),
                              simd::multiply_add(t_nearby.y(), inverse_depth, directions.y),
                              simd::multiply_add(t_nearby.z(), inverse_depth, directions.z)};
-    // Distortion is nearly constant over such steps.
+    // Distortion is nearly constant over such distances.
     const Float8 du = static_cast<float>(camera.fx_px) * (moved.x / moved.z - middles.x);
     const Float8 dv = static_cast<float>(camera.fy_px) * (moved.y / moved.z - middles.y);
     const Float8 u = du + simd::kLaneNumber + (static_cast<float>(begin) + 0.5F);
@@ -125,7 +125,7 @@ class RowLight {
     return row * camera.width_px + column;
   }
 
-  /// Traces the rays that are left, in the order of their pixels.
+  /// Traces the remaining rays in the order of their pixels.
   void add_left() {
     sort_by_pixel();
     std::vector<CameraPose> poses, poses_before;
@@ -143,7 +143,7 @@ class RowLight {
         shade_left(scene_, hits[i], rays.packet(i * kLanes), i * kLanes, hits[i].triangle >= 0);
       return;
     }
-    // All samples have a foreground, and the same thing in it.
+    // All samples have the same foreground object.
     const LitScene& thing = samples_.front().foreground->thing.scene();
     const RayList rays_before = rays_left(poses_before);
     const std::vector<PacketHits> hits_before = thing.trace(rays_before);
@@ -157,9 +157,9 @@ class RowLight {
     }
   }
 
-  /// Keeps the order of the samples within a pixel.
+  /// Stable sort by pixel.
   void sort_by_pixel() {
-    std::vector<std::uint32_t> next(light_.size() + 1, 0);  // by pixel, where its next ray goes
+    std::vector<std::uint32_t> next(light_.size() + 1, 0);  // by pixel: index of its next ray
     for (const Left& ray : left_) ++next[ray.pixel + 1];
     for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
     std::vector<Left> sorted(left_.size());

@@ -1,4 +1,4 @@
-// Light of the pixels of a row, as the sum of samples.
+// Light of a row of pixels as a sum of samples.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 
 namespace fusebench::simulator::render {
 
-/// Renderer::add_light_of_row(). Rays near which other rays met a triangle are tried with that one; the rest
-/// are traced.
+/// Implements Renderer::add_light_of_row(). A ray is first tested against the triangle of a nearby hit; the
+/// others are traced.
 void add_light_of_samples(const LitScene& scene, const rays::RayField& field,
                           std::span<const RowSample> samples, std::span<Eigen::Array4f> light);
 

@@ -44,8 +44,8 @@ texture::Texture::Samples SurfaceShading::light_of(const PacketHits& hits, unsig
     light = same ? at.light.at(hits) : light;
     texels_per_metre = same ? simd::all_lanes(at.texels_per_metre) : texels_per_metre;
   });
-  // Seen obliquely the square becomes a rectangle; the side of a square of the same area avoids most of the
-  // aliasing without blurring along the short side too much.
+  // At an oblique view the square projects to a rectangle. A square of the same area avoids most of the
+  // aliasing without much blur along the short side.
   constexpr float kMinCosine = 0.05F;
   const simd::Float8 stretch = simd::sqrt(simd::max(simd::all_lanes(kMinCosine), hits.cos_incidence));
   const simd::Float8 texels = footprint * hits.distance * texels_per_metre / stretch;
@@ -94,7 +94,7 @@ float SurfaceShading::mirrored_light(float gloss, const Eigen::Vector3f& normal,
   float light = kRoom * (0.5F + 0.5F * mirrored.z());
   for (const scene::Highlight& lamp : highlights_) {
     float lobe = std::max(0.0F, mirrored.dot((lamp.position - point).normalized()));
-    for (int i = 0; i < 6; ++i) lobe *= lobe;  // to the power of 64
+    for (int i = 0; i < 6; ++i) lobe *= lobe;  // power of 64
     light += lamp.strength * lobe;
   }
   return gloss * light;

@@ -1,4 +1,4 @@
-// The light that triangles send to a camera.
+// Light that triangles emit towards a camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,32 +11,32 @@
 
 namespace fusebench::simulator::render {
 
-/// Textures, light and gloss of a scene's triangles.
+/// Textures, light and gloss of the triangles of a scene.
 class SurfaceShading {
  public:
   explicit SurfaceShading(const scene::SimulatedScene& scene);
 
-  /// Of hits in the given lanes: reflectance, times light if `lit`; colours of the mesh, which are lit, where
-  /// there is no texture. footprint: side of the square that a ray stands for, at the distance 1, across the
-  /// ray. page: what screens show.
+  /// Reflectance of hits in the given lanes, times light if `lit`; mesh colours (already lit) without a
+  /// texture. footprint: side of the square that a ray covers at distance 1, across the ray. page: content of
+  /// screens.
   [[nodiscard]] texture::Texture::Samples light_of(const PacketHits& hits, unsigned lanes,
                                                    simd::Float8 footprint, simd::Int8 page,
                                                    bool lit = true) const;
 
-  /// Of the page that screens show at a time.
+  /// Page of the screens at a time.
   [[nodiscard]] std::int32_t page_at(double time_s) const;
 
   [[nodiscard]] bool has_gloss() const { return !gloss_.empty(); }
-  /// 0 matt to 1 polished.
+  /// 0 (matt) to 1 (polished).
   [[nodiscard]] float gloss_of(std::int32_t triangle) const;
 
-  /// What a glossy surface adds to its own light: the lamps' images, 10 degrees wide, and a faint room that
-  /// is brighter above. Not shadowed. ray: from the origin to the point, of any length.
+  /// Light that a glossy surface adds: images of the lamps, 10 degrees wide, and a faint room that is
+  /// brighter above. Without shadows. ray: from the origin to the point, of any length.
   [[nodiscard]] float mirrored_light(float gloss, const Eigen::Vector3f& normal, const Eigen::Vector3f& point,
                                      const Eigen::Vector3f& ray) const;
 
  private:
-  /// A quantity that is linear on a triangle.
+  /// A linear quantity on a triangle.
   struct Linear {
     float at_a = 0;
     float along_u = 0;
@@ -47,7 +47,7 @@ class SurfaceShading {
       return simd::multiply_add(along_v, hits.v, simd::multiply_add(along_u, hits.u, simd::all_lanes(at_a)));
     }
   };
-  /// Of a textured triangle, in one cache line.
+  /// Data of a textured triangle in one cache line.
   struct TriangleShading {
     Linear u;
     Linear v;

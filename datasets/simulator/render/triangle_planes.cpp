@@ -10,7 +10,7 @@ namespace fusebench::simulator::render {
 
 namespace {
 
-/// By triangle: a number that triangles share if vertices connect them.
+/// By triangle: a number common to triangles that are connected by vertices.
 std::vector<std::int32_t> connected_triangles(const Mesh& mesh) {
   DisjointSets sets(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {

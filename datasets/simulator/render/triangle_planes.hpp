@@ -1,4 +1,4 @@
-// Rays against the planes of known triangles, eight at a time.
+// Intersection of eight rays with the planes of given triangles.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,15 +32,15 @@ struct RayPacket {
   }
 };
 
-/// What eight rays meet, by lane.
+/// Hits of eight rays, by lane.
 struct PacketHits {
   simd::Int8 triangle = simd::all_lanes(-1);  ///< index in the mesh, -1: nothing
-  simd::Float8 distance{};                    ///< in lengths of the directions
+  simd::Float8 distance{};                    ///< in units of the direction's length
   simd::Float8 u{};                           ///< barycentric: point = (1 - u - v) a + u b + v c
   simd::Float8 v{};
-  simd::Float8 cos_incidence{};  ///< of the angle between the ray and the normal (either side), 0 to 1
+  simd::Float8 cos_incidence{};  ///< cosine of the angle between ray and normal (either side), 0 to 1
 
-  /// Takes over the lanes of `other` in which `taken` holds.
+  /// Copies the lanes of `other` that are set in `taken`.
   void take(simd::Int8 taken, const PacketHits& other) {
     triangle = taken ? other.triangle : triangle;
     distance = taken ? other.distance : distance;
@@ -50,7 +50,7 @@ struct PacketHits {
   }
 };
 
-/// visit(value, lanes that have it) for each different value in the lanes whose bit is set.
+/// Calls visit(value, lanes with it) for each distinct value in the lanes whose bit is set.
 template <class Visit>
 void for_each_value(simd::Int8 values, unsigned lanes, const Visit& visit) {
   std::int32_t by_lane[simd::kLanes];
@@ -63,8 +63,8 @@ void for_each_value(simd::Int8 values, unsigned lanes, const Visit& visit) {
   }
 }
 
-/// The planes of a mesh's triangles, and which triangles belong to one face: a set of triangles of one
-/// texture that share vertices.
+/// Planes of the triangles of a mesh, and their faces: sets of triangles with one texture and common
+/// vertices.
 class TrianglePlanes {
  public:
   /// textures: by triangle, may be empty.
@@ -75,11 +75,11 @@ class TrianglePlanes {
     return planes_[triangle].normal;
   }
 
-  /// Where rays meet the plane of the triangle, inside of it or not.
+  /// Intersections of rays with the plane of the triangle, inside or outside of it.
   [[nodiscard]] PacketHits meet(std::int32_t triangle, const RayPacket& rays) const {
     const Plane& plane = planes_[static_cast<std::size_t>(triangle)];
     const simd::Float8 slope = dot(plane.normal, rays.directions);
-    // Lengths from a corner, so that origin and plane may be far from the origin of the mesh.
+    // Relative to a corner, so that origin and plane may be far from the origin of the mesh.
     const simd::Points from_corner{rays.origins.x - plane.corner.x(), rays.origins.y - plane.corner.y(),
                                    rays.origins.z - plane.corner.z()};
     PacketHits hits;
@@ -93,7 +93,7 @@ class TrianglePlanes {
     return hits;
   }
 
-  /// Lanes whose ray meets the triangle itself, before its origin. Not a number counts as outside.
+  /// Lanes whose ray hits the triangle itself, in front of its origin. NaN counts as outside.
   [[nodiscard]] static simd::Int8 inside(const PacketHits& hits) {
     return (hits.distance > 0.0F) & (hits.u >= 0.0F) & (hits.v >= 0.0F) & (hits.u + hits.v <= 1.0F);
   }

@@ -8,16 +8,16 @@ namespace fusebench::simulator::render {
 
 namespace {
 
-/// Relative second difference of the inverse depth, which is 0 on a plane: an edge where it is more.
+/// Threshold of the relative second difference of inverse depth (0 on a plane) for an edge.
 constexpr float kDepthJump = 0.02F;
 constexpr int kMotionStep_px = 16;
 
-/// Of a line of three pixels.
+/// Tests three pixels in a line.
 bool has_jump(float before, float middle, float after) {
   return std::abs(before + after - 2 * middle) > kDepthJump * middle;
 }
 
-/// The greatest value within `reach` of each pixel, in both directions. Each step doubles the window.
+/// Maximum within `reach` of each pixel, in both directions. Each step doubles the window.
 Image<float> greatest_around(const Image<float>& image, int reach) {
   Image<float> result = image;
   const auto widen = [&](std::ptrdiff_t shift, int columns, int rows) {
@@ -26,7 +26,7 @@ Image<float> greatest_around(const Image<float>& image, int reach) {
       for (int u = 0; u < columns; ++u) row[u] = std::max(row[u], row[u + shift]);
     }
   };
-  // Windows from a pixel on, along a row and along a column, of 2 reach + 1; then they are centred.
+  // Windows of 2 reach + 1 from a pixel on, along rows and columns, which are then centred.
   const int side = 2 * reach + 1;
   for (int covered = 1; covered < side; covered *= 2) {
     const int step = std::min(covered, side - covered);
@@ -87,7 +87,7 @@ double longest_image_motion_px(const VisibleTriangles& visible, const rays::RayF
                          static_cast<double>(y[static_cast<std::size_t>(u)]), 1.0);
       const Vector3d moved =
           R * ray + static_cast<double>(visible.inverse_depth_per_m(u, v)) * T_end_begin.translation;
-      if (moved.z() < 0.1) continue;  // behind the camera or nearly: no length in pixels
+      if (moved.z() < 0.1) continue;  // at or behind the camera: no length in pixels
       const Vector2d step = moved.head<2>() / moved.z() - ray.head<2>();
       longest2_px =
           std::max(longest2_px, step.cwiseProduct(Vector2d(camera.fx_px, camera.fy_px)).squaredNorm());

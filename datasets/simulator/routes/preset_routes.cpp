@@ -22,13 +22,13 @@ random::RandomSequence random_of(const RouteRequest& request) {
 
 double hand_height_m(random::RandomSequence& random) { return random.uniform(1.35, 1.5); }
 
-/// A rectangular ring within a room. Sides are counted counter-clockwise from the one at -y.
+/// A rectangular ring within a room. Sides are numbered counter-clockwise from the one at -y.
 struct Ring {
   Vector2d middle_m{0, 0};
   Vector2d half_m{0, 0};
   double height_m = 0;
 
-  /// The middle of a side, or with corner = +-1 its end in that direction of counting.
+  /// The middle of a side, or with corner = +-1 its end in that direction of numbering.
   [[nodiscard]] Vector3d at(int side, int corner = 0) const {
     const double angle_rad = outward_rad(side);
     const Vector2d outward(std::round(std::cos(angle_rad)), std::round(std::sin(angle_rad)));
@@ -39,7 +39,7 @@ struct Ring {
   [[nodiscard]] static double outward_rad(int side) { return kQuarter_rad * (side - 1); }
 };
 
-/// From the middle of a side once round to it again, or over a part of its four sides, looking outward.
+/// One round from the middle of a side, or over a part of its four sides, looking outwards.
 void add_lap(RoutePlan& plan, const Ring& ring, int first_side, int direction, double pitch_rad,
              int sides = 4) {
   for (int i = 0; i < sides; ++i) {
@@ -50,7 +50,7 @@ void add_lap(RoutePlan& plan, const Ring& ring, int first_side, int direction, d
   }
 }
 
-/// Ring of a room of a flat, whose side 0 is that of the door.
+/// Ring in a room of a flat; side 0 is at the door.
 Ring room_ring(int room, double height_m, random::RandomSequence& random) {
   constexpr double kHalf_m = 1.15;
   const double size = random.uniform(0.93, 1.07);
@@ -145,7 +145,7 @@ RoutePlan shake_revisit_route(const RouteRequest& request, double end_s) {
   while (plan.last().time_s < end_s) {
     plan.stay(kQuiet_s);
     const double side = any_direction(random);
-    // To one side, to the other one, to the first one again, and back.
+    // To one side, to the other, to the first again, and back.
     const std::array<double, 4> headings_rad = {heading_rad + side * radians(random.uniform(95, 115)),
                                                 heading_rad - side * radians(random.uniform(80, 100)),
                                                 heading_rad + side * radians(random.uniform(85, 105)),
@@ -184,7 +184,7 @@ RoutePlan twin_rooms_route(const RouteRequest& request) {
 }
 
 RoutePlan no_loop_route(const RouteRequest& request) {
-  constexpr double kEnds_m = 1.2;  // from the first one, and room for the view before the last one
+  constexpr double kEnds_m = 1.2;  // distance from the first end wall, and free view to the last one
   constexpr double kView_m = 2.8;
   constexpr double kStep_m = 2.0;
   constexpr double kHeading_rad = radians(66.0);

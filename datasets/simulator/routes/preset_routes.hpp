@@ -1,4 +1,4 @@
-// The routes of the presets that follow one, through their scenes.
+// Routes of the presets through their scenes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,26 +9,27 @@
 
 namespace fusebench::simulator::routes {
 
-/// What a route is planned for.
+/// Input of the planning of a route.
 struct RouteRequest {
   RouteSpeeds speeds;
-  double pitch_rad = 0;            ///< the mean one
+  double pitch_rad = 0;            ///< mean pitch
   Eigen::AlignedBox3d free_space;  ///< of the preset's scene
   std::uint64_t seed = 1;
 };
 
-/// Twice along the walls of the room that free_space is the middle of, looking outward; every lap ends where
-/// the first one began, within 0.1 m.
+/// Two laps along the walls of the room around free_space, looking outwards. Each lap ends within 0.1 m of
+/// the start of the first.
 [[nodiscard]] RoutePlan loop_room_route(const RouteRequest& request);
-/// In a scene::make_flat(): along the corridor, round in every room, back along the corridor to the beginning
-/// and its direction of view.
+/// In a scene::make_flat(): along the corridor, around each room, and back along the corridor to the first
+/// pose.
 [[nodiscard]] RoutePlan loop_flat_route(const RouteRequest& request);
-/// In a scene::make_corridor(): 25 m out, a turn at the end, 25 m back on the other side with a view of the
-/// same wall, and a turn to the first direction of view.
+/// In a scene::make_corridor(): 25 m forward, a turn, 25 m back on the other side with a view of the same
+/// wall, and a turn to the first viewing direction.
 [[nodiscard]] RoutePlan corridor_route(const RouteRequest& request);
-/// In an office: 4 s of one view, 2 s of shaking through it to both sides and back, and so on to the end_s.
+/// In an office: 4 s of one view, 2 s of shaking to both sides and back, repeated until end_s.
 [[nodiscard]] RoutePlan shake_revisit_route(const RouteRequest& request, double end_s);
-/// In a scene::make_twin_rooms(): round in the first room, through the corridor, the same round in the other.
+/// In a scene::make_twin_rooms(): around the first room, through the corridor, the same path in the other
+/// room.
 [[nodiscard]] RoutePlan twin_rooms_route(const RouteRequest& request);
 /// In a scene::make_gallery(): along its furnished wall.
 [[nodiscard]] RoutePlan no_loop_route(const RouteRequest& request);

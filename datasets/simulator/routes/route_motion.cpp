@@ -10,16 +10,16 @@ namespace fusebench::simulator::routes {
 
 namespace {
 
-// Of the sway about the route: of the order of these per axis, up to about twice as fast.
+// Approximate amplitude of the sway about the route per axis; peaks are up to twice as large.
 constexpr double kSway_mps = 0.05;
 constexpr double kSway_radps = 0.08;
 
-// What the plan may have of the peak speeds; sway and tremor have the rest.
+// Share of the plan in the peak speeds; the rest is for sway and tremor.
 constexpr double kPlannedSpeed = 0.8;
 constexpr double kPlannedRate = 0.75;
 
-constexpr double kWalkSpacing_s = 0.3;    // corners of a walk are rounded over about a second
-constexpr double kShakeSpacing_s = 0.06;  // a hand reverses its turning within about 0.2 s
+constexpr double kWalkSpacing_s = 0.3;    // rounds the corners of a walk over about a second
+constexpr double kShakeSpacing_s = 0.06;  // a hand reverses its rotation within about 0.2 s
 
 RoutePlan plan_of(motion::MotionPreset preset, const RouteRequest& request, double end_s) {
   using motion::MotionPreset;

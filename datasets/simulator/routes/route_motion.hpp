@@ -1,4 +1,4 @@
-// The motion of a hand-held camera along a route.
+// Motion of a hand-held camera along a route.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,11 +9,10 @@
 
 namespace fusebench::simulator::routes {
 
-/// The motion of the colour camera (T_world_camera, world z up) along the route of a preset for which
-/// motion::follows_route() holds, with the sway and the tremor of a hand. free_space is that of the preset's
-/// scene of the same seed. Speeds stay below the peaks of the options. A span that is shorter than the route
-/// shows its beginning; in a longer one the camera is held at its end. The same arguments give the same
-/// motion.
+/// Motion of the colour camera (T_world_camera, world z up) along the route of a preset with
+/// motion::follows_route(), with the sway and tremor of a hand. free_space: of the preset's scene with the
+/// same seed. Speeds stay below the peaks of the options. A span shorter than the route shows its start; in a
+/// longer one the camera rests at its end. Deterministic.
 [[nodiscard]] synthetic_imu::PoseSpline route_motion(motion::MotionPreset preset,
                                                      const motion::MotionOptions& options,
                                                      const motion::MotionSpan& span,

@@ -8,8 +8,8 @@
 
 namespace fusebench::simulator::routes {
 
-/// Where the camera is and looks at a time of the route. Headings are about world z (0 looks along x) and not
-/// reduced to one turn; pitch is up.
+/// Pose of the camera at a time of the route. Headings are about world z (0 is along x), not reduced to one
+/// turn; pitch is up.
 struct KeyPose {
   double time_s = 0;
   Vector3d position_world_m = Vector3d::Zero();
@@ -17,25 +17,25 @@ struct KeyPose {
   double pitch_rad = 0;
 };
 
-/// Speeds between key poses; whichever takes longer decides when the next one is reached.
+/// Speeds between key poses; the slower of translation and rotation determines the time of the next one.
 struct RouteSpeeds {
   double speed_mps = 0.65;
-  double rate_radps = 0.9;  ///< of heading and pitch, each
+  double rate_radps = 0.9;  ///< of heading and of pitch
 };
 
-/// Key poses one after the other. Between two of them position, heading and pitch are linear in time.
+/// A sequence of key poses. Position, heading and pitch are linear in time between them.
 class RoutePlan {
  public:
   RoutePlan(const RouteSpeeds& speeds, const KeyPose& start) : speeds_(speeds), poses_{start} {}
 
-  /// Turns the shorter way to the heading (modulo a turn) while moving.
+  /// Moves to a pose, with the shorter rotation to the heading (modulo a turn).
   void move_to(const Vector3d& position_world_m, double heading_rad, double pitch_rad);
-  /// The heading is taken as it is, and the time is given.
+  /// Moves with the heading as given (no reduction) in the given time.
   void swing_to(const Vector3d& position_world_m, double heading_rad, double pitch_rad, double duration_s);
   void stay(double duration_s);
 
   [[nodiscard]] const KeyPose& last() const { return poses_.back(); }
-  /// Before the first key pose and after the last one: that one.
+  /// Before the first key pose: the first one; after the last: the last one.
   [[nodiscard]] KeyPose at(double time_s) const;
 
  private:
@@ -43,9 +43,9 @@ class RoutePlan {
   std::vector<KeyPose> poses_;
 };
 
-/// The uniform cubic B-spline (T_world_camera; camera x right, y down, z forward) whose control points lie on
-/// the plan every spacing_s, from three spacings before time 0 to three after the plan's end, where it is at
-/// rest. Twice continuously differentiable, and no faster than the plan; corners are rounded within two
+/// Uniform cubic B-spline (T_world_camera; camera x right, y down, z forward) with control points on the plan
+/// every spacing_s, from three spacings before time 0 to three after the end of the plan, where it is at
+/// rest. Twice continuously differentiable and not faster than the plan; corners are rounded within two
 /// spacings.
 [[nodiscard]] synthetic_imu::PoseSpline smooth_route(const RoutePlan& plan, double spacing_s);
 

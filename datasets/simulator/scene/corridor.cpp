@@ -43,7 +43,7 @@ class CorridorPlan {
   }
 
  private:
-  /// Things on a long wall, with paint between them.
+  /// Objects on a long wall, with paint between them.
   void along(const Wall& wall) {
     double x = -0.5 * wall.length_m + any(0.8, 2.0);
     while (x < 0.5 * wall.length_m - 0.8) {

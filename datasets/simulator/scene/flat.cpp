@@ -17,15 +17,15 @@ namespace {
 
 using Shape = FlatShape;
 
-// How far furniture may reach into a room from the walls, and up in its middle.
+// Largest depth of furniture from the walls, and its height in the middle of a room.
 constexpr double kFurnitureReach_m = 1.4;
 constexpr double kTableTop_m = 0.9;
 constexpr double kAmbient = 0.5;
 
-/// The frame of the corridor's floor within a stretch of it: in its middle.
+/// Frame of the corridor's floor in a unit: at its middle.
 SE3 corridor_middle() { return placed({}, {0, -0.5 * Shape::kCorridorWidth_m, 0}); }
 
-/// One room with its stretch of the corridor, around x = 0.
+/// One room with its part of the corridor, around x = 0.
 class UnitPlan {
  public:
   explicit UnitPlan(std::uint64_t key)
@@ -123,7 +123,7 @@ SimulatedScene make_ends(int units, std::uint64_t key) {
 
 Vector3d unit_shift(int index) { return {index * Shape::kUnit_m, 0, 0}; }
 
-/// Adds the ends of the corridor and what depends on the whole scene.
+/// Adds the ends of the corridor and the data of the whole scene.
 SimulatedScene finished(SimulatedScene scene, int units, std::uint64_t key) {
   const SimulatedScene ends = make_ends(units, key);
   const std::int32_t first_texture = add_part_textures(scene, ends);

@@ -1,4 +1,4 @@
-// Furnished rooms side by side along a corridor.
+// Furnished rooms next to each other along a corridor.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace fusebench::simulator::scene {
 
-/// Floor at z = 0. Room i and its stretch of the corridor lie around x = i kUnit_m; rooms are at y > 0, the
-/// corridor at y < 0. Each room has a door opening in the middle of its wall to the corridor, whose face
-/// towards the corridor is at y = 0.
+/// Floor at z = 0. Room i and its part of the corridor are around x = i kUnit_m; rooms are at y > 0, the
+/// corridor at y < 0. Each room has a door opening in the middle of its wall to the corridor, whose corridor
+/// side is at y = 0.
 struct FlatShape {
   static constexpr double kUnit_m = 5.25;                           ///< from one room to the next
   static constexpr double kWall_m = 0.25;                           ///< thickness
@@ -23,13 +23,12 @@ struct FlatShape {
 
 inline constexpr int kFlatRooms = 3;
 
-/// Three rooms, about 15.8 x 7.3 m. Furniture, textures and the order of the walls differ from room to room.
-/// free_space is in the middle of the first room, at the height of hand-held cameras. The same seed gives the
-/// same scene.
+/// Three rooms, about 15.8 x 7.3 m, with different furniture, textures and order of walls. free_space is in
+/// the middle of the first room, at the height of hand-held cameras. The same seed gives the same scene.
 [[nodiscard]] SimulatedScene make_flat(std::uint64_t seed);
 
-/// Two rooms that are equal to the bit in shape, furniture, textures and light, with equal stretches of the
-/// corridor before them. Only the ends of the corridor tell them apart, which are not seen from the rooms.
+/// Two rooms with bit-identical shape, furniture, textures and light, and identical parts of the corridor.
+/// Only the ends of the corridor differ; they are not visible from the rooms.
 [[nodiscard]] SimulatedScene make_twin_rooms(std::uint64_t seed);
 
 }  // namespace fusebench::simulator::scene

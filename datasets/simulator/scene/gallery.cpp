@@ -19,8 +19,8 @@ using Shape = GalleryShape;
 enum class Contents { books, desk, sofa };
 constexpr int kContents = 3;
 
-/// A section around x = 0, lit on its own, so that light is even from one to the next. The first one and the
-/// last one have an end wall.
+/// A section around x = 0, lit separately, so that light is even between sections. The first and the last one
+/// have an end wall.
 SimulatedScene make_section(int index, Contents contents, std::uint64_t key) {
   RoomBuilder builder;
   random::RandomSequence random(random::mix_key(key, 1));
@@ -55,7 +55,7 @@ SimulatedScene make_gallery(std::uint64_t seed) {
     const SimulatedScene section = make_section(i, static_cast<Contents>(contents), random.bits());
     const std::int32_t first_texture = add_part_textures(scene, section);
     add_part(scene, section, first_texture, {(i + 0.5) * Shape::kSection_m, 0, 0});
-    contents = (contents + 1 + random.below(kContents - 1)) % kContents;  // not the same again
+    contents = (contents + 1 + random.below(kContents - 1)) % kContents;  // different from the previous one
   }
   color_vertices(scene);
   scene.free_space = {Vector3d(0.7, -0.7, 0.9), Vector3d(2 * Shape::kSection_m, 0.4, 1.9)};

@@ -1,4 +1,4 @@
-// A long hall with furniture along one side, for a path on which no place is seen twice.
+// A long hall with furniture along one side, for a path without repeated views.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace fusebench::simulator::scene {
 
-/// From x = 0 along the x axis, floor at z = 0. The furnished wall is at y = kFurnishedWall_m.
+/// The hall is along the x axis from x = 0, floor at z = 0. The furnished wall is at y = kFurnishedWall_m.
 struct GalleryShape {
   static constexpr int kSections = 8;
   static constexpr double kSection_m = 5.0;
@@ -17,8 +17,8 @@ struct GalleryShape {
   static constexpr double kHeight_m = 2.75;
 };
 
-/// Sections of 5 m, each with textures and furniture of its own: books, a desk or a sofa. free_space is
-/// before the first sections, at the height of hand-held cameras. The same seed gives the same scene.
+/// Sections of 5 m, each with its own textures and furniture: books, a desk or a sofa. free_space is in front
+/// of the first sections, at the height of hand-held cameras. The same seed gives the same scene.
 [[nodiscard]] SimulatedScene make_gallery(std::uint64_t seed);
 
 }  // namespace fusebench::simulator::scene

@@ -83,7 +83,7 @@ class OfficePlan {
   }
 
  private:
-  /// Origin at its foot in the middle, y into the room; the second one is towards +x.
+  /// Frame of a wall: origin at its foot in the middle, y into the room; wall 1 is towards +x.
   [[nodiscard]] static SE3 wall(int index) {
     const Quaterniond turn = so3_exp({0, 0, index * 0.5 * std::numbers::pi});
     return {turn, turn * Vector3d(0, index % 2 == 0 ? -kHalfY_m : -kHalfX_m, 0)};
@@ -109,7 +109,7 @@ class OfficePlan {
     }
   }
 
-  /// Frame: on the top, in its middle, y towards the person who sits there.
+  /// Frame: on the top, in its middle, y towards the seat.
   void desk(const SE3& T) {
     builder_.add_box(placed(T, {0, 0, -0.03}), {kDeskWidth_m, kDeskDepth_m, 0.03},
                      {.texture = desk_top_, .repeat_m = 0.9});
@@ -203,7 +203,7 @@ class OfficePlan {
     }
   }
 
-  /// A cable that lies on the desk in a bow.
+  /// A cable on the desk in a curve.
   void cord(const Vector3d& from_room, const Vector3d& to_room) {
     const Vector3d across = Vector3d::UnitZ().cross(to_room - from_room) * any(-0.5, 0.5);
     constexpr int kPieces = 8;

@@ -10,7 +10,7 @@ namespace fusebench::simulator::scene {
 
 namespace {
 
-// How far furniture may reach into the room from the walls, and up in its middle.
+// Largest depth of furniture from the walls, and its height in the middle.
 constexpr double kFurnitureReach_m = 1.4;
 constexpr double kTableTop_m = 0.9;
 
@@ -29,7 +29,7 @@ class RoomPlan {
     furnishing_.seating_area({});
     beams_and_lamps();
     const int first = random_.below(4);
-    const int step = random_.below(2) == 0 ? 1 : 3;  // clockwise or not
+    const int step = random_.below(2) == 0 ? 1 : 3;  // clockwise or counter-clockwise
     furnishing_.books_wall(wall(first));
     furnishing_.desk_wall(wall(first + step));
     furnishing_.plain_wall(wall(first + 2 * step));

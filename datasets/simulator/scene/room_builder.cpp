@@ -8,8 +8,8 @@ namespace fusebench::simulator::scene {
 
 namespace {
 
-constexpr double kCell_m = 0.125;  // of large surfaces; shadows are as sharp as this
-constexpr int kAround = 24;        // facets of round things
+constexpr double kCell_m = 0.125;  // cell size of large surfaces; limits the sharpness of shadows
+constexpr int kAround = 24;        // facets of round objects
 constexpr int kRings = 14;
 
 }  // namespace
@@ -65,7 +65,7 @@ void RoomBuilder::add_box(const SE3& T_room_box, const Vector3d& size, const Pai
   const Vector3d corner = T_room_box.translation - 0.5 * x - 0.5 * y;
   const auto shifted = [&](double by) {
     Paint paint = sides;
-    paint.offset.x() += by;  // faces do not continue each other's pattern
+    paint.offset.x() += by;  // avoids a continuous pattern over the faces
     return paint;
   };
   add_rectangle(corner, x, z, sides);                   // towards -y

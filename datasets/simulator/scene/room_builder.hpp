@@ -1,4 +1,4 @@
-// Puts triangles with texture coordinates into a scene: rectangles, boxes, round things.
+// Adds triangles with texture coordinates to a scene: rectangles, boxes, round bodies.
 #pragma once
 
 #include <cstdint>
@@ -9,38 +9,36 @@
 
 namespace fusebench::simulator::scene {
 
-/// How a surface is covered.
+/// Texture of a surface.
 struct Paint {
   std::int32_t texture = 0;  ///< index into the scene's textures
-  double repeat_m =
-      0.64;  ///< side of one repeat; 0: the texture covers a rectangle (or a mantle) exactly once
-  Vector2d offset{0, 0};  ///< shift, in repeats
-  float brightness = 1;   ///< factor on the reflectance
+  double repeat_m = 0.64;    ///< side of one repeat; 0: the texture covers a rectangle (or a mantle) once
+  Vector2d offset{0, 0};     ///< shift, in repeats
+  float brightness = 1;      ///< factor on the reflectance
 };
 
-/// Large surfaces are cut into cells, so that light can vary over them. Normals point out of the things that
-/// are added.
+/// Divides large surfaces into cells, over which light can vary. Normals point outwards.
 class RoomBuilder {
  public:
   std::int32_t add_texture(const texture::ReflectanceImage& image);
 
-  /// From `corner` along two edges; the front is where along x up points.
+  /// Rectangle from `corner` along two edges; its front is towards `along` x `up`.
   void add_rectangle(const Vector3d& corner, const Vector3d& along, const Vector3d& up, const Paint& paint);
-  /// Centred over the frame's origin in x and y, standing on z = 0; `top` covers the upper face.
+  /// Box centred on the frame's origin in x and y, with its bottom at z = 0; `top` is for the upper face.
   void add_box(const SE3& T_room_box, const Vector3d& size, const Paint& sides, const Paint& top);
   void add_box(const SE3& T_room_box, const Vector3d& size, const Paint& paint) {
     add_box(T_room_box, size, paint, paint);
   }
-  /// A round body about the frame's z axis from z = 0, radius_bottom to radius_top, closed at both ends.
+  /// Round body about the frame's z axis from z = 0, radius_bottom to radius_top, closed at both ends.
   void add_frustum(const SE3& T_room_base, double radius_bottom, double radius_top, double height,
                    const Paint& paint);
   void add_cylinder(const SE3& T_room_base, double radius, double height, const Paint& paint) {
     add_frustum(T_room_base, radius, radius, height, paint);
   }
-  /// Centred in the frame's origin.
+  /// Ellipsoid centred at the frame's origin.
   void add_ellipsoid(const SE3& T_room_centre, const Vector3d& radii, const Paint& paint);
 
-  /// The scene so far; light is the brightness of the paint.
+  /// The current scene; light is the brightness of the paint.
   [[nodiscard]] SimulatedScene& scene() { return scene_; }
 
  private:

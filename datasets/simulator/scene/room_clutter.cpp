@@ -18,7 +18,7 @@ Clutter::Clutter(RoomBuilder& builder, const RoomTextures& textures, random::Ran
                  std::uint64_t key)
     : builder_(builder), textures_(textures), random_(random) {
   random::RandomSequence seeds(key);
-  // Bold shapes: what is printed small only adds noise when it is seen from near.
+  // Large shapes only, since fine print adds noise in near views.
   constexpr int kPictures = 7;
   for (int i = 0; i < kPictures; ++i)
     labels_.push_back(builder.add_texture(texture::paint_picture(kLabelSide_px, seeds.bits())));
@@ -86,7 +86,7 @@ void Clutter::leaning_books(const SE3& T, double width_m, double max_height_m) {
 
 void Clutter::plates(const SE3& T, double width_m, double max_height_m) {
   const double radius = std::min(0.5 * max_height_m, any(0.08, 0.12));
-  const double turn_rad = any(0.5, 1.1);  // so that each is seen behind the other
+  const double turn_rad = any(0.5, 1.1);  // visible behind each other
   for (double x = 0.5 * radius - 0.5 * width_m; x < 0.5 * (width_m - radius); x += any(0.03, 0.055)) {
     builder_.add_ellipsoid(tilted(placed(T, {x, 0, radius}, turn_rad), {0, 0.12, 0}), {0.006, radius, radius},
                            label(0.36));
@@ -202,7 +202,7 @@ void Clutter::creeper(const SE3& T, double length_m) {
   }
 }
 
-/// Returns the width that it took.
+/// Returns the used width.
 double Clutter::wide_object(const SE3& T_left, double room_m, double depth_m, double max_height_m) {
   const double width = std::min(room_m, any(0.2, 0.38));
   const SE3 T = placed(T_left, {0.5 * width, 0, 0});
@@ -258,7 +258,7 @@ void Clutter::fill_board(const SE3& T, const Vector3d& clear_m) {
     if (room_m > 0.22 && random_.below(5) < 2) {
       x += wide_object(placed(T, {x, -0.02, 0}), room_m, clear_m.y() - 0.08, clear_m.z());
     } else {
-      // One before the other, not in line: the far one is seen past the near one.
+      // One behind the other, not aligned, so that both are visible.
       const double back_m = 0.06 - 0.5 * clear_m.y();
       if (random_.below(4) != 0) slender_object(placed(T, {x, back_m + any(0, 0.05), 0}), clear_m.z());
       x += slender_object(placed(T, {x + any(0, 0.03), -back_m - any(0.01, 0.1), 0}), 0.75 * clear_m.z());

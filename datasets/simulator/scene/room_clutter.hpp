@@ -1,6 +1,5 @@
-// Small things that hide each other: what stands on the boards of an open rack. Each takes the frame of the
-// thing, as in room_furniture.hpp; sizes are in metres. Every thing fits into the width and the height that
-// it is given.
+// Small objects that occlude each other, on the boards of an open rack. Each function takes the frame of the
+// object, as in room_furniture.hpp; sizes are in metres. Each object fits into the given width and height.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +13,12 @@ namespace fusebench::simulator::scene {
 
 class Clutter {
  public:
-  /// Paints labels of its own; their patterns are a function of the key.
+  /// Paints labels with patterns that depend on the key.
   Clutter(RoomBuilder& builder, const RoomTextures& textures, random::RandomSequence& random,
           std::uint64_t key);
 
-  /// A row of things from wall to front on a board of the given clear size (width, depth, height), with gaps
-  /// that the wall behind is seen through.
+  /// A row of objects from the wall to the front on a board of the given free size (width, depth, height),
+  /// with gaps that show the wall behind.
   void fill_board(const SE3& T, const Vector3d& clear_m);
 
   void can(const SE3& T, double max_height_m);
@@ -32,7 +31,7 @@ class Clutter {
   void wire_basket(const SE3& T, double width_m, double depth_m, double max_height_m);
   void slatted_crate(const SE3& T, double width_m, double depth_m, double max_height_m);
   void poster(const SE3& T, double width_m, double height_m);  ///< on a wall
-  /// A cable that hangs between two points, its middle lower by the sag.
+  /// A cable that hangs between two points, with its middle lower by the sag.
   void cable(const Vector3d& from_room, const Vector3d& to_room, double sag_m);
   /// Leaves along a stalk that hangs down from the frame's origin.
   void creeper(const SE3& T, double length_m);

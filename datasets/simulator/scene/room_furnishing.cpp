@@ -21,7 +21,7 @@ void RoomFurnishing::cover_around(const Wall& wall, const Opening& opening, cons
   const double end_m = 0.5 * wall.length_m;
   const double left_m = opening.middle_m - 0.5 * opening.width_m;
   const double right_m = opening.middle_m + 0.5 * opening.width_m;
-  // A pattern begins at the lower corner at +x, as that of a whole wall.
+  // A pattern begins at the lower corner at +x, as for a whole wall.
   const auto part = [&](double from_m, double to_m, double low_m) {
     Paint shifted = paint;
     if (paint.repeat_m > 0) shifted.offset += Vector2d(end_m - to_m, low_m) / paint.repeat_m;
@@ -41,7 +41,7 @@ void RoomFurnishing::skirting(const Wall& wall) {
 
 void RoomFurnishing::door_frame(const Wall& wall, const Opening& opening, double thickness_m) {
   constexpr double kPost_m = 0.06;
-  constexpr double kProud_m = 0.02;  // of the wall, on either side
+  constexpr double kProud_m = 0.02;  // protrusion from the wall, on both sides
   const Paint paint{.texture = textures_.dark_wood, .repeat_m = 0.6};
   const double depth_m = thickness_m + 2 * kProud_m;
   for (const double side : {-0.5, 0.5}) {

@@ -1,4 +1,4 @@
-// The surfaces of a room with what stands along its walls and in its middle.
+// Surfaces of a room with the furniture along its walls and in its middle.
 #pragma once
 
 #include "core/base/geometry.hpp"
@@ -8,14 +8,14 @@
 
 namespace fusebench::simulator::scene {
 
-/// A wall's frame: origin at its foot in the middle, x along it, y into the room, z up.
+/// A wall with its frame: origin at its foot in the middle, x along it, y into the room, z up.
 struct Wall {
   SE3 T_scene_wall;
   double length_m = 0;
   double height_m = 0;
 };
 
-/// A door opening, from the floor up.
+/// A door opening from the floor up.
 struct Opening {
   double middle_m = 0;  ///< along the wall's x
   double width_m = 0;
@@ -26,7 +26,7 @@ struct Opening {
 /// sides along x and y. index: 0 is the wall at -y, the next ones follow counter-clockwise, modulo four.
 [[nodiscard]] Wall room_wall(const SE3& T_scene_room, const Vector2d& half_m, double height_m, int index);
 
-/// Random details come from the sequence of numbers that it is given, in the order of the calls.
+/// Adds furniture. Random details are drawn from the given sequence in the order of the calls.
 class RoomFurnishing {
  public:
   RoomFurnishing(RoomBuilder& builder, const RoomTextures& textures, Furnisher& furnisher,
@@ -35,9 +35,9 @@ class RoomFurnishing {
 
   void floor_and_ceiling(const SE3& T_scene_room, const Vector2d& half_m, double height_m);
   void seating_area(const SE3& T_scene_room);  ///< a rug and a coffee table in the middle
-  void lamp_shade(const SE3& T);               ///< stands on the frame's origin
+  void lamp_shade(const SE3& T);               ///< base at the frame's origin
 
-  // Each covers one wall and puts what belongs there before it. Furniture reaches up to 1.4 m into the room.
+  // Each function covers one wall and adds its furniture, up to 1.4 m into the room.
   void books_wall(const Wall& wall);
   void desk_wall(const Wall& wall);   ///< bricks, a pin board, a desk with a chair
   void plain_wall(const Wall& wall);  ///< paint, a door, little else
@@ -46,10 +46,10 @@ class RoomFurnishing {
 
   /// Covers a wall from z = low to high.
   void cover(const Wall& wall, double low_m, double high_m, const Paint& paint);
-  /// Covers all of a wall but the opening; the pattern goes on around it.
+  /// Covers a wall except the opening, with a continuous pattern.
   void cover_around(const Wall& wall, const Opening& opening, const Paint& paint);
   void skirting(const Wall& wall);
-  /// Posts and a lintel around an opening through a wall of some thickness, which lies at y < 0.
+  /// Posts and a lintel around an opening through a wall of the given thickness, at y < 0.
   void door_frame(const Wall& wall, const Opening& opening, double thickness_m);
 
  private:

@@ -1,6 +1,5 @@
-// Things that stand in a room, built from rectangles, boxes and round bodies. Each takes the frame of the
-// thing: origin on the floor (or on what it stands on, or on the wall) in its middle, z up, y from its back
-// to its front.
+// Furniture from rectangles, boxes and round bodies. Each function takes the frame of the object: origin at
+// the middle of its base (on the floor, on furniture or at the wall), z up, y from its back to its front.
 #pragma once
 
 #include <array>
@@ -32,10 +31,10 @@ struct RoomTextures {
   std::array<std::int32_t, 5> pictures{};
 };
 
-/// Paints all textures; colours and patterns are a function of the key.
+/// Paints all textures; colours and patterns depend on the key.
 [[nodiscard]] RoomTextures paint_room_textures(RoomBuilder& builder, std::uint64_t key);
 
-/// A frame that is moved and turned about z within another one.
+/// A frame with a translation and a rotation about z relative to another one.
 [[nodiscard]] SE3 placed(const SE3& T_room_base, const Vector3d& at, double yaw_rad = 0);
 
 /// Builds furniture with random details.
@@ -53,7 +52,7 @@ class Furnisher {
   void cabinet(const SE3& T, double width_m, double height_m);
   void shelf_of_jars(const SE3& T, int columns, int rows);  ///< all alike, on a wall
 
-  // Small things and what hangs on walls (room_objects.cpp).
+  // Small objects and wall decoration (room_objects.cpp).
   void books(const SE3& T, double width_m, double max_height_m);  ///< a standing row, spines towards y
   void stack_of_books(const SE3& T, int count);
   void papers(const SE3& T, double reach_m, int count);  ///< scattered sheets

@@ -13,12 +13,12 @@ namespace {
 
 constexpr int kAmbientRays = 32;
 constexpr double kAmbientReach_m = 1.2;
-constexpr double kLift_m = 0.01;  // off the surface, so that it does not shield itself
+constexpr double kLift_m = 0.01;  // distance from the surface that avoids self-occlusion
 constexpr double kLampRadius_m = 0.12;
-constexpr double kMinAmbientShare = 0.25;  // what is left of the ambient light in a closed corner: it bounces
+constexpr double kMinAmbientShare = 0.25;  // share of the ambient light in a closed corner, from reflections
 
-/// Directions over the hemisphere about z, denser where the surface sees more (cosine), the same for all
-/// vertices so that neighbours differ smoothly.
+/// Cosine-weighted directions over the hemisphere about z, equal for all vertices so that neighbours differ
+/// smoothly.
 std::array<Vector3d, kAmbientRays> hemisphere() {
   std::array<Vector3d, kAmbientRays> directions;
   for (int i = 0; i < kAmbientRays; ++i) {

@@ -24,7 +24,7 @@ void Furnisher::books(const SE3& T, double width_m, double max_height_m) {
     builder_.add_box(placed(T, {x + 0.5 * thickness, any(-0.02, 0.02), 0}), {0.94 * thickness, depth, height},
                      paint, {.texture = textures_.pages[0], .repeat_m = 0.4});
     x += thickness;
-    if (random_.below(9) == 0) x += any(0.03, 0.08);  // one is lent out
+    if (random_.below(9) == 0) x += any(0.03, 0.08);  // gap of a missing book
   }
 }
 
@@ -123,7 +123,7 @@ void Furnisher::window(const SE3& T) {
   constexpr double kHeight_m = 1.2;
   builder_.add_box(placed(T, {0, 0.02, 0}), {kWidth_m, 0.05, kHeight_m}, wood(false));
   for (const double x : {-0.31, 0.31}) {
-    for (const double z : {0.06, 0.64}) {  // panes that show a blurred outdoors
+    for (const double z : {0.06, 0.64}) {  // panes with a blurred outdoor view
       builder_.add_rectangle(
           T * Vector3d(x + 0.28, 0.046, z), T.rotation * Vector3d(-0.56, 0, 0),
           T.rotation * Vector3d(0, 0, 0.5),

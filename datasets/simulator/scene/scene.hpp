@@ -1,4 +1,4 @@
-// A scene of textured triangles, as the simulator renders it.
+// A scene of textured triangles for the simulator.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,54 +12,50 @@
 
 namespace fusebench::simulator::scene {
 
-/// A lamp as glossy surfaces mirror it.
+/// Reflection of a lamp on glossy surfaces.
 struct Highlight {
   Eigen::Vector3f position;
-  float strength = 0;  ///< light in the middle of its image on a polished surface
+  float strength = 0;  ///< light in the centre of its reflection on a polished surface
 };
 
-/// A texture that stands for several in turn, as a screen shows pages.
+/// A texture that is replaced by several in turn, as the pages of a screen.
 struct Screens {
-  std::int32_t first_texture = -1;  ///< where triangles have this one, `pages` textures from it on are shown
+  std::int32_t first_texture = -1;  ///< triangles with this texture show `pages` textures in turn, from it on
   int pages = 1;
 };
 
-/// How long a screen shows a page.
+/// Display time of a page.
 inline constexpr double kPage_s = 0.8;
 
-/// Triangles with materials in the scene's own world: metres, z up. Surfaces are matt unless they have gloss:
-/// their radiance does not depend on the direction, so a point keeps its brightness while the camera moves
-/// (the sensor changes it, the scene does not).
+/// Triangles with materials in the scene's world: metres, z up. Surfaces without gloss are matt: their
+/// radiance does not depend on the direction, so a point keeps its brightness while the camera moves. The
+/// sensor model changes the brightness.
 struct SimulatedScene {
   static constexpr std::int32_t kNoTexture = -1;
 
-  Mesh mesh;  ///< vertices, triangles; colors (sRGB, lighting included) are shown where a triangle has no
-              ///< texture
+  Mesh mesh;  ///< vertices, triangles; colors (sRGB, with lighting) apply to triangles without a texture
   std::vector<std::int32_t>
       triangle_textures;  ///< by triangle: index into textures, or kNoTexture; empty: none
   std::vector<Eigen::Vector2f>
-      texture_coordinates;  ///< by vertex, in repeats of the texture; empty without textures
-  std::vector<float>
-      light;  ///< by vertex: a texture's reflectance times this is what the surface sends; empty: 1
+      texture_coordinates;   ///< by vertex, in repeats of the texture; empty without textures
+  std::vector<float> light;  ///< by vertex: emitted light = reflectance * light; empty: 1
   std::vector<texture::Texture> textures;
   std::vector<float> gloss;  ///< by texture: 0 matt to 1 polished; empty: all matt
   std::vector<Highlight> highlights;
   Screens screens;
 
-  /// Where a camera may be: nothing of the scene is inside. For scenes read from files this is an estimate
-  /// (read_scene()).
+  /// Free space for cameras. For scenes from files it is an estimate (read_scene()).
   Eigen::AlignedBox3d free_space;
-  /// Where the things worth looking at are.
+  /// Region with the objects of interest.
   Eigen::AlignedBox3d look_at;
-  /// Level direction from the free space to what the scene is about (about z, 0 looks along x); empty: all
-  /// around.
+  /// Horizontal direction from the free space to the objects (about z, 0 is along x); empty: all around.
   std::optional<double> heading_rad;
-  /// The mean direction to look in where it is not the only one; empty: by the texture.
+  /// Mean viewing direction, if there is a preferred one; empty: by the texture.
   std::optional<double> face_rad;
 };
 
-/// Gives the vertices of textured triangles the colour that they show (mesh.colors), for viewers of the mesh
-/// without its textures.
+/// Sets mesh.colors of vertices of textured triangles to their displayed colour, for viewers without
+/// textures.
 void color_vertices(SimulatedScene& scene);
 
 }  // namespace fusebench::simulator::scene

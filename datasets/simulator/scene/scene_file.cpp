@@ -17,11 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFarthest_m = 1e6F;  // a float resolves 6 cm there; far below what overflows when multiplied
+constexpr float kFarthest_m = 1e6F;  // a float resolves 6 cm there, without overflow of products
 constexpr float kTextureRepeat_m = 1.2F;
 constexpr int kTextureSide = 512;
 
-/// A mesh in which no triangles share vertices, textured and lit by the direction that each faces.
+/// A mesh without shared vertices, textured and lit by the direction of each face.
 SimulatedScene textured(const Mesh& mesh) {
   SimulatedScene scene;
   scene.textures.emplace_back(texture::paint_speckles(kTextureSide, texture::reflectance_of(0xc0b8a8),
@@ -60,7 +60,7 @@ Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& 
   Mesh mesh = precise->cast<float>();
   if (mesh.triangles.empty()) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: no triangles, so there is nothing to see", file.string()),
+                fmt::format("{}: no triangles, so nothing is visible", file.string()),
                 "a point cloud has to be meshed first");
   }
   Eigen::AlignedBox3d bounds;
@@ -75,7 +75,7 @@ Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& 
     if (options.y_up) vertex = Eigen::Vector3f(vertex.x(), -vertex.z(), vertex.y());
     bounds.extend(vertex.cast<double>());
   }
-  mesh.normals.clear();  // nothing needs those of the file, which may point anywhere
+  mesh.normals.clear();  // normals of the file are unused and may be wrong
   SimulatedScene scene;
   if (mesh.colors.empty()) {
     scene = textured(mesh);

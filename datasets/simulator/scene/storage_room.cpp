@@ -18,12 +18,12 @@ constexpr double kHeight_m = 2.7;
 constexpr double kRackWidth_m = 4.5;
 constexpr double kRackHeight_m = 2.25;
 constexpr double kRackDepth_m = 0.36;
-constexpr double kGap_m = 0.07;       // from the rack to the wall
-constexpr double kOverhang_m = 0.04;  // of leaves and cables, before the rack
+constexpr double kGap_m = 0.07;       // between rack and wall
+constexpr double kOverhang_m = 0.04;  // of leaves and cables, in front of the rack
 constexpr double kPost_m = 0.028;
 constexpr double kBoard_m = 0.02;
 
-// The slab in which cameras are.
+// Slab of camera positions.
 constexpr double kNearest_m = 0.72;
 constexpr double kSlab_m = 0.22;
 
@@ -57,7 +57,7 @@ class StorageRoomPlan {
   }
 
  private:
-  /// Origin at its foot in the middle, y into the room; the second one is towards +x.
+  /// Frame of a wall: origin at its foot in the middle, y into the room; wall 1 is towards +x.
   [[nodiscard]] static SE3 wall(int index) {
     const Quaterniond turn = so3_exp({0, 0, index * 0.5 * std::numbers::pi});
     return {turn, turn * Vector3d(0, -kHalf_m, 0)};
@@ -112,7 +112,7 @@ class StorageRoomPlan {
     }
   }
 
-  /// What hangs down from the front edge of a board.
+  /// Objects that hang from the front edge of a board.
   void hang(const SE3& T_edge, double width_m) {
     if (random_.below(3) == 0) {
       const double x = random_.uniform(-0.4, 0.1) * width_m;

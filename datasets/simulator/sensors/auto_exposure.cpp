@@ -10,10 +10,10 @@ namespace fusebench::simulator::sensors {
 namespace {
 
 constexpr int kRoundsToSettle = 60;
-constexpr double kMaxStep = 1.25;  // of a frame, up or down: cameras avoid visible jumps
+constexpr double kMaxStep = 1.25;  // largest change per frame, up or down: avoids visible jumps
 
-/// The next product of exposure and gain. Grey levels go about with the square root of light; a part of the
-/// error is corrected a frame, so that the lag does not make the loop swing.
+/// The next product of exposure and gain. Grey levels are about proportional to the square root of light.
+/// Only a part of the error is corrected in each frame, so that the lag does not cause oscillation.
 double corrected(const ExposureControl& control, double factor, double grey) {
   const double error = control.target_grey / std::max(grey, 1.0);
   const double step = std::sqrt(std::sqrt(error));
@@ -22,7 +22,7 @@ double corrected(const ExposureControl& control, double factor, double grey) {
   return std::clamp(factor * std::clamp(step, 1 / kMaxStep, kMaxStep), least, most);
 }
 
-/// A long exposure before gain, which amplifies noise.
+/// Prefers a long exposure to gain, which amplifies noise.
 FrameExposure split(const ExposureControl& control, double factor) {
   const double wanted_s = factor * control.unit_exposure_s;
   const double exposure_s = std::clamp(wanted_s, control.least_s, control.most_s);
@@ -41,7 +41,7 @@ double mean_grey(std::span<const float> light, double factor) {
 std::vector<FrameExposure> controlled_exposures(const ExposureControl& control,
                                                 std::span<const std::vector<float>> light_of_frame) {
   std::vector<FrameExposure> exposures;
-  std::vector<double> grey;  // of the images taken so far
+  std::vector<double> grey;  // of the earlier images
   double factor = 1;
   for (int round = 0; round < kRoundsToSettle && !light_of_frame.empty(); ++round)
     factor = corrected(control, factor, mean_grey(light_of_frame.front(), factor));

@@ -10,14 +10,13 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-/// The filter before a pixel: 0 red, 1 green, 2 blue. Rows are GRGR... and BGBG..., as in the Kinect.
+/// Colour filter of a pixel: 0 red, 1 green, 2 blue. Rows are GRGR... and BGBG..., as in the Kinect.
 int filter_at(int u, int v) {
   if ((u + v) % 2 == 0) return 1;
   return v % 2 == 0 ? 0 : 2;
 }
 
-/// The image with a pixel more on each side, as a mirror at the outer pixels shows it: that keeps the colour
-/// of the filter.
+/// Adds a border of one pixel by mirroring at the outer pixels, which preserves the filter colour.
 template <class Pixel>
 Image<Pixel> with_border(const Image<Pixel>& image, const Workers& workers) {
   const auto mirrored = [](int x, int size) {
@@ -54,8 +53,7 @@ Image<float> read_out(const Image<Eigen::Vector3f>& light, const ColorProcessing
   return raw;
 }
 
-/// The colours at a pixel: its own, and means of the nearest pixels behind the other filters. raw: with
-/// border.
+/// The colours at a pixel: its own, and means of the nearest pixels of the other colours. raw: with border.
 std::array<float, 3> interpolated(const Image<float>& raw, int u, int v) {
   const float* above = &raw(u, v);
   const float* row = &raw(u, v + 1);

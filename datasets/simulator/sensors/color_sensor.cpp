@@ -32,7 +32,7 @@ struct Exposure {
   float gain;
   const MovingObject* before;
 
-  /// Of row `row`, after a share of the exposure.
+  /// Instant of a row after a share of the exposure.
   [[nodiscard]] std::int64_t instant_ns(int row, double share) const {
     const auto after_ns = static_cast<std::int64_t>(std::llround(1e9 * sensor.exposure_s * (share - 0.5)));
     const std::int64_t row_ns =
@@ -40,7 +40,7 @@ struct Exposure {
     return row_ns + after_ns;
   }
 
-  /// Of the rows, after a share of the exposure.
+  /// Poses of the rows after a share of the exposure.
   [[nodiscard]] render::RowPoses poses(double share) const {
     const bool rolls = sensor.camera.timing.color_readout_s != 0;
     const int rows = rolls ? sensor.camera.pinhole.height_px : 1;
@@ -52,17 +52,17 @@ struct Exposure {
     return poses;
   }
 
-  /// Of what is visible, during the exposure.
+  /// Image motion of visible points during the exposure.
   [[nodiscard]] double motion_px(const render::VisibleTriangles& visible) const {
     return render::longest_image_motion_px(visible, rays, poses(0), poses(1));
   }
 
-  /// By the motion of the image, unless the sensor has a number of samples.
+  /// Number of samples: blur_samples, or by the image motion if it is 0.
   [[nodiscard]] int samples(double motion_px) const {
     return sensor.blur_samples > 0 ? sensor.blur_samples : samples_of_motion(motion_px);
   }
 
-  /// A sample of all rows.
+  /// One sample of all rows.
   struct Instant {
     double share;  ///< of the exposure
     render::RowPoses poses;
@@ -77,7 +77,7 @@ struct Exposure {
     return instants;
   }
 
-  /// The row's light, averaged over the exposure.
+  /// Averages the light of a row over the exposure.
   void integrate(int row, const std::vector<Instant>& instants, const render::VisibleTriangles& visible,
                  std::span<Eigen::Array4f> light) const {
     std::vector<render::Foreground> things;
@@ -99,7 +99,7 @@ struct Exposure {
     renderer.add_light_of_row(rays, samples, light);
   }
 
-  /// Vignetting and gain of one row.
+  /// Applies vignetting and gain to a row.
   void transmit(int row, const ColorImage& image, std::span<Eigen::Array4f> light) const {
     const double centre_x = 0.5 * (image.width - 1);
     const double centre_y = 0.5 * (image.height - 1);
@@ -111,7 +111,7 @@ struct Exposure {
     }
   }
 
-  /// Noise and encoding of one row.
+  /// Applies noise and encoding to a row.
   void develop(int row, std::span<const Eigen::Array4f> light, ColorImage& image) const {
     const bool noisy = sensor.read_noise_grey > 0 || sensor.shot_noise > 0;
     const auto read2 = static_cast<float>(sensor.read_noise_grey * sensor.read_noise_grey);
@@ -124,7 +124,8 @@ struct Exposure {
       for (std::size_t c = 0; c < 3; ++c) {
         const float value = light[static_cast<std::size_t>(u)][static_cast<Eigen::Index>(c)];
         const SrgbEncoder::Encoded at = encoder(value);
-        // Shot noise is that of the light; its slope carries it to grey levels, where one draw serves both.
+        // The shot noise of the light is scaled to grey levels by the slope of the encoding, so one random
+        // number is sufficient for both noises.
         const float variance = read2 + shot2 * std::clamp(value, 0.0F, 1.0F) * at.slope * at.slope;
         const float grey = at.grey + std::sqrt(variance) * draws[c];
         image(u, row)[c] = static_cast<std::uint8_t>(std::clamp(grey + 0.5F, 0.0F, 255.0F));
@@ -177,12 +178,12 @@ ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sen
     visible = renderer.visible_triangles(rays, exposure.poses(0.5), workers);
     const double motion_px = exposure.motion_px(visible);
     instants = exposure.instants(exposure.samples(motion_px));
-    // From the middle of the exposure to its ends, and by half a pixel within the pixel.
+    // From the middle of the exposure to its ends, plus half a pixel.
     const double distance_px = std::min(0.5 * motion_px + 1, static_cast<double>(camera.width_px));
     render::find_nearest_around(static_cast<int>(std::ceil(distance_px)), visible);
   }
   ColorImage image(camera.width_px, camera.height_px);
-  const bool mosaic = sensor.processing.mosaic;  // neighbours are needed: the whole image, then its colours
+  const bool mosaic = sensor.processing.mosaic;  // demosaicing uses neighbours, so it runs on the whole image
   Image<Eigen::Vector3f> whole(mosaic ? camera.width_px : 0, mosaic ? camera.height_px : 0);
   workers.for_chunks(static_cast<std::size_t>(camera.height_px), kRowsPerChunk,
                      [&](std::size_t begin, std::size_t end) {

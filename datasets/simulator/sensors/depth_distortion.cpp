@@ -9,7 +9,7 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-/// Index of the pixel of the ideal image that a pixel of the distorted one shows, -1: none.
+/// Index of the ideal image's pixel at a pixel of the distorted image, -1: none.
 std::int32_t ideal_pixel(const calibration::CalibratedCamera& camera, int u, int v) {
   const PinholeCamera& p = camera.pinhole;
   const Vector2d on_plane = camera.distortion.undistort({(u - p.cx_px) / p.fx_px, (v - p.cy_px) / p.fy_px});

@@ -1,4 +1,4 @@
-// Depth that is registered to a colour camera with distortion.
+// Depth registered to a colour camera with distortion.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Puts depth of the ideal pinhole camera onto the pixels of the distorted image: each takes the nearest
-/// measurement, since interpolation would invent surfaces, so values are off by up to half a pixel sideways.
-/// 0 where there is none.
+/// Maps depth of the ideal pinhole camera to the pixels of the distorted image. Each pixel takes the nearest
+/// measurement, since interpolation would create false surfaces; the lateral error is up to half a pixel. 0
+/// without a measurement.
 class DepthDistortion {
  public:
   DepthDistortion(const calibration::CalibratedCamera& camera, const Workers& workers);
 
-  /// The image has the size of camera.pinhole (checked).
+  /// The image must have the size of camera.pinhole (checked).
   [[nodiscard]] Image<std::uint16_t> distorted(const Image<std::uint16_t>& ideal) const;
 
  private:

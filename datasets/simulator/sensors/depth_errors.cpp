@@ -1,7 +1,6 @@
-// The sizes of the fixed errors are the caller's. What is lost, and the numbers, are assumptions of ours from
-// the look of depth images of a Kinect (TUM freiburg1): black monitors and chair legs have none beyond about
-// a metre, glossy tables only where they are seen from above, and surfaces fade out between 70 and 80
-// degrees.
+// The sizes of the fixed errors are options. The rules for missing depth and their constants are assumptions
+// from depth images of a Kinect (TUM freiburg1): no depth on black monitors and chair legs beyond about a
+// metre; on glossy tables only in views from above; a decreasing share between 70 and 80 degrees.
 #include "datasets/simulator/sensors/depth_errors.hpp"
 
 #include <algorithm>
@@ -17,13 +16,13 @@ namespace {
 
 using Surface = render::Renderer::Surface;
 
-constexpr double kBaseline_m = 0.075;  // a Kinect's
-constexpr int kSmoothSpacing_px = 80;  // of the sensor, as the next
-constexpr int kPatchSpacing_px = 14;   // holes are patches rather than single pixels
+constexpr double kBaseline_m = 0.075;  // of a Kinect
+constexpr int kSmoothSpacing_px = 80;  // pixels of the sensor, as kPatchSpacing_px
+constexpr int kPatchSpacing_px = 14;   // holes are larger than single pixels
 constexpr std::size_t kRowsPerChunk = 16;
 
-// Of the width and the height: the margins without depth in freiburg1, 10, 44, 37 and 3 of 640 x 480 px,
-// where the infrared camera does not see what the colour camera sees.
+// Shares of width and height: margins without depth in freiburg1, 10, 44, 37 and 3 of 640 x 480 px, outside
+// the view of the infrared camera.
 constexpr double kLeft = 10 / 640.0;
 constexpr double kRight = 44 / 640.0;
 constexpr double kAbove = 37 / 480.0;
@@ -32,10 +31,10 @@ constexpr double kBelow = 3 / 480.0;
 constexpr float kGrazingCosine = 0.26F;  // 75 degrees
 constexpr float kGrazingSoft = 0.03F;
 constexpr float kLeastSignal = 0.011F;   // infrared reflectance * cosine / z^2 [1/m^2]
-constexpr float kInfrared = 0.011F;      // reflectance of what is black to the eye
+constexpr float kInfrared = 0.011F;      // infrared reflectance of black surfaces
 constexpr float kSignalSoft = 0.25F;     // relative
-constexpr float kGlossLost = 0.5F;       // of the light that a fully glossy surface sends elsewhere
-constexpr float kMirrorCosine = 0.992F;  // a glossy surface blinds the sensor where it mirrors the projector
+constexpr float kGlossLost = 0.5F;       // share of the light that a fully glossy surface reflects elsewhere
+constexpr float kMirrorCosine = 0.992F;  // near mirror reflection of the projector, the sensor is saturated
 
 bool is_in_border(const Image<Surface>& surfaces, int u, int v) {
   const int width = surfaces.width;
@@ -44,7 +43,7 @@ bool is_in_border(const Image<Surface>& surfaces, int u, int v) {
          v >= height - kBelow * height;
 }
 
-/// Whether the projector's light does not come back. noise: standard normal, shared by a small patch.
+/// True if the light of the projector is not received. noise: standard normal, common to a small patch.
 bool is_lost(const Surface& surface, float noise) {
   if (surface.cos_incidence < kGrazingCosine + kGrazingSoft * noise) return true;
   const float spread = 1 - kGlossLost * surface.gloss * (1 - surface.cos_incidence);

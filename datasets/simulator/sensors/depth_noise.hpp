@@ -1,5 +1,4 @@
-// What depth sensors make of true depth. Images in metres, 0 where nothing is measured; the same key gives
-// the same noise.
+// Noise models of depth sensors. Images in metres, 0 without a measurement; deterministic for a key.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +22,8 @@ namespace fusebench::simulator::sensors {
                                              const NativePixels& native, std::uint64_t key,
                                              const Workers& workers);
 
-/// A Kinect as it is rather than as in ICL-NUIM's noisy sequences, whose steps of a centimetre are too coarse
-/// near by; see depth_noise_zr300.cpp, which has the same model.
+/// A Kinect with realistic steps; those of ICL-NUIM's noisy sequences (a centimetre) are too coarse at short
+/// range. See depth_noise_zr300.cpp, which has the same model.
 [[nodiscard]] DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces,
                                       const NativePixels& native, std::uint64_t key, const Workers& workers);
 

@@ -40,7 +40,7 @@ constexpr std::uint64_t kShiftNoise = 1;
 constexpr std::uint64_t kStepNoiseKey = 2;
 constexpr std::uint64_t kDots = 0xD075;  // the pattern is the same in all images
 
-/// Lengths of step 3 in pixels of the image, for a camera of any size.
+/// Lengths of step 3 in pixels of the image, for any image size.
 struct Lengths {
   explicit Lengths(const NativePixels& native)
       : native_px(static_cast<float>(native.per_image_px())),
@@ -48,13 +48,13 @@ struct Lengths {
         cell(native.in_image(3)),
         cells_around(half_window / cell + 1) {}
 
-  float native_px;  ///< of the sensor, for one of the image
+  float native_px;  ///< sensor pixels per image pixel
   int half_window;
-  int cell;          ///< one dot each; the fill radius reaches into the neighbouring cells only
+  int cell;          ///< one dot per cell; the fill radius reaches neighbouring cells only
   int cells_around;  ///< that a window can reach
 };
 
-/// Steps 1 and 2. A pixel that looks past an open edge or at too oblique a surface has disparity 0.
+/// Steps 1 and 2. Disparity is 0 beyond an open edge or on a surface that is too oblique.
 DepthImage quantised_disparity(const Image<render::Renderer::Surface>& surfaces, float focal_baseline,
                                float shift_px, std::uint64_t key, const Workers& workers) {
   DepthImage disparity_px(surfaces.width, surfaces.height);
@@ -90,7 +90,7 @@ struct Dot {
   int v = 0;
 };
 
-/// The projector's pattern: by cell, a dot within it.
+/// The pattern of the projector: the dot of each cell.
 Image<Dot> dot_pattern(int width, int height, int cell) {
   Image<Dot> dots(width / cell, height / cell);
   const auto size = static_cast<std::uint64_t>(cell);
@@ -104,7 +104,7 @@ Image<Dot> dot_pattern(int width, int height, int cell) {
   return dots;
 }
 
-/// Sums over the pixels of each row within a distance: of disparities, and of measured pixels.
+/// Sums over row windows: of disparities, and of measured pixels.
 struct RowSums {
   DepthImage disparity_px;
   Image<float> measured;
@@ -122,8 +122,8 @@ struct RowSums {
   }
 };
 
-/// Step 3 at one dot: its disparity, or 0 where the window does not agree. sums: over half the window's width
-/// to either side.
+/// Step 3 for one dot: its disparity, or 0 if the window does not agree. sums: over half the window to either
+/// side.
 float measured_at(const DepthImage& disparity_px, const RowSums& sums, const Lengths& lengths,
                   const Image<Dot>& dots, const Dot& dot) {
   const int half = lengths.half_window;
@@ -161,8 +161,7 @@ float measured_at(const DepthImage& disparity_px, const RowSums& sums, const Len
   return static_cast<float>(agreeing) > kAgreement * static_cast<float>(seen) ? centre : 0.0F;
 }
 
-/// By pixel the disparity of the nearest dot that was measured, of the first of several; 0 if there is none
-/// within reach.
+/// For each pixel, the disparity of the nearest measured dot (the first on a tie); 0 if none is within reach.
 DepthImage filled_from(const DepthImage& dots_px, const Lengths& lengths, const Image<Dot>& dots, int width,
                        int height) {
   const float fill_radius2 = std::pow(kFillRadius_px / lengths.native_px, 2.0F);

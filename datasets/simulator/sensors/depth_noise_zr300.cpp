@@ -49,8 +49,8 @@ constexpr float kMinCosine = 0.1736F;  // 80 degrees
 constexpr std::uint64_t kFieldKey = 3;
 constexpr std::uint64_t kFadeKey = 4;
 
-/// Occlusion in the right image: 1 where a nearer surface hides the point of a pixel of the left image row,
-/// or the point is outside the right image. native_px: of the sensor, for one of the image.
+/// Occlusion in the right image: 1 if a nearer surface hides the point of a pixel of the left image row, or
+/// if the point is outside the right image. native_px: sensor pixels per image pixel.
 std::vector<std::uint8_t> occluded_in_right(std::span<const float> disparity_px, float native_px) {
   const std::size_t width = disparity_px.size();
   std::vector<float> nearest(width, 0.0F);  // by column of the right image
@@ -70,8 +70,8 @@ std::vector<std::uint8_t> occluded_in_right(std::span<const float> disparity_px,
   return occluded;
 }
 
-/// Values of `of` within half_window of each pixel, along rows or columns (step: distance of neighbours),
-/// reduced by `best`. The window is cut off at the border.
+/// Reduces the values of `of` within half_window of each pixel by `best`, along rows or columns (step:
+/// distance of neighbours). The window is clipped at the border.
 template <class Best>
 void reduce_windows(const DepthImage& of, int half_window, bool along_rows, const Best& best,
                     const Workers& workers, DepthImage& result) {
@@ -89,7 +89,7 @@ void reduce_windows(const DepthImage& of, int half_window, bool along_rows, cons
   });
 }
 
-/// Least or greatest value (`best` of two) in the square window around each pixel.
+/// Minimum or maximum (`best`) in the square window around each pixel.
 template <class Best>
 DepthImage in_square_window(const DepthImage& of, int half_window, const Best& best, const Workers& workers) {
   DepthImage across, result;
@@ -98,7 +98,7 @@ DepthImage in_square_window(const DepthImage& of, int half_window, const Best& b
   return result;
 }
 
-/// 0 up to where the dots begin to fade, 1 where they are gone.
+/// 0 up to the depth where the dots begin to fade, 1 where they are invisible.
 float faded(const StereoSensor& sensor, float depth_m) {
   return std::clamp((depth_m - sensor.fade_begin_m) / (sensor.fade_end_m - sensor.fade_begin_m), 0.0F, 1.0F);
 }
@@ -129,7 +129,7 @@ DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer
     for (int u = 0; u < surfaces.width; ++u) {
       const render::Renderer::Surface& surface = surfaces(u, v);
       const float disparity = disparity_px(u, v);
-      // On the far side of a jump within the window.
+      // Far side of a jump within the window.
       const bool behind_jump =
           most(u, v) - least(u, v) > kJump_px && disparity - least(u, v) < most(u, v) - disparity;
       if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] != 0 ||

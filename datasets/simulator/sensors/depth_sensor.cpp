@@ -41,7 +41,7 @@ DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, cons
   return depth_m;
 }
 
-/// Depth image of a surface whose frame is a function of time.
+/// Depth image of a surface in a moving frame.
 Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const DepthSensor& sensor,
                                          std::int64_t capture_ns,
                                          const std::function<SE3(std::int64_t)>& T_surface_camera,
@@ -57,7 +57,7 @@ Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const 
   return surfaces;
 }
 
-/// Keeps the nearer depth of each pixel; 0 is no measurement.
+/// Merges the nearer depth of each pixel; 0 means no measurement.
 void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Renderer::Surface>& surfaces) {
   for (std::size_t i = 0; i < surfaces.data.size(); ++i) {
     const render::Renderer::Surface& a = nearer.data[i];

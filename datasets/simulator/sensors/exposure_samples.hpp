@@ -1,4 +1,4 @@
-// Places within the pixel at which the instants of an exposure are sampled.
+// Sub-pixel positions of the samples of an exposure.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,12 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Offsets from the middle of the pixel, for samples at equal steps of time: a low-discrepancy sequence
-/// (Roberts' R2), from which mean and trend over time are taken out, since they would shift the image and
-/// change the length of its blur.
+/// Offsets from the pixel centre for samples at equal time steps: a low-discrepancy sequence (Roberts' R2)
+/// without its mean and its trend over time, which would shift the image and change the length of its blur.
 [[nodiscard]] std::vector<Vector2d> sample_offsets_px(int samples);
 
-/// For an image that moves by so many pixels during the exposure: a sample for each two pixels, 8 to 64.
-/// Fewer than 8 alias, which raises the intensity error of tracked patches.
+/// Number of samples for an image motion during the exposure: one for each two pixels, 8 to 64. Fewer than 8
+/// cause aliasing, which increases the intensity error of tracked patches.
 [[nodiscard]] int samples_of_motion(double motion_px);
 
 }  // namespace fusebench::simulator::sensors

@@ -1,4 +1,4 @@
-// What the lists of a recording say about when its images were taken, and which of them are there at all.
+// Stamps of images in the lists of a recording, and dropped images.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Errors of a driver; with none of them stamps are the instants of capture.
+/// Errors of a driver; without them, stamps are the capture instants.
 struct StampErrors {
-  double jitter_s = 0;       ///< standard deviation of a stamp about its capture (at most 3.9 of them)
-  double dropped_share = 0;  ///< of the images that never arrive, each by chance; the first one always does
+  double jitter_s = 0;       ///< standard deviation of a stamp (cut at 3.9 of them)
+  double dropped_share = 0;  ///< share of randomly dropped images; the first one is never dropped
 
   [[nodiscard]] bool any() const { return jitter_s > 0 || dropped_share > 0; }
 };
@@ -21,11 +21,10 @@ struct ImageStamps {
   std::vector<bool> dropped;
 };
 
-/// Which sensor, so that two of them err independently.
+/// Random streams of the sensors, whose errors are independent.
 enum class ImageStream : std::uint64_t { color = 1, depth = 2 };
 
-/// Stamps of images that are captured at capture_ns, rounded to multiples of tick_ns. The same arguments give
-/// the same stamps.
+/// Stamps of images captured at capture_ns, rounded to multiples of tick_ns. Deterministic.
 [[nodiscard]] ImageStamps stamped(std::span<const std::int64_t> capture_ns, const StampErrors& errors,
                                   std::int64_t tick_ns, std::uint64_t seed, ImageStream stream);
 

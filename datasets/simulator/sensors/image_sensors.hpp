@@ -1,4 +1,4 @@
-// Colour and depth cameras that move: exposure, noise, quantisation.
+// Models of moving colour and depth cameras: exposure, noise, quantisation.
 #pragma once
 
 #include <cstdint>
@@ -17,75 +17,73 @@
 
 namespace fusebench::simulator::sensors {
 
-/// A colour camera. Light is integrated over the exposure in linear light, so that fast motion blurs; noise
-/// comes after that, then sRGB encoding to 8 bits. A pixel of row r is exposed for exposure_s around capture
-/// + (r / (height - 1) - 1/2) * timing.color_readout_s.
+/// A colour camera. It averages linear light over the exposure (motion blur), adds noise, and encodes to
+/// 8-bit sRGB. A pixel of row r is exposed for exposure_s around capture + (r / (height - 1) - 1/2) *
+/// timing.color_readout_s.
 struct ColorSensor {
-  calibration::CalibratedCamera camera;  ///< with size; its distortion and read-out are simulated
+  calibration::CalibratedCamera camera;  ///< with size; distortion and read-out are simulated
   double exposure_s = 0.008;
-  double gain_drift = 0;  ///< relative amplitude (< 1) of a slow auto-exposure drift, see exposure_gain()
-  double vignetting = 0;  ///< relative loss of light in the corners; grows with the square of the radius
+  double gain_drift = 0;       ///< relative amplitude (< 1) of a slow gain drift, see exposure_gain()
+  double vignetting = 0;       ///< relative loss of light in the corners; proportional to the squared radius
   double read_noise_grey = 0;  ///< standard deviation, grey levels, of each channel
-  double shot_noise =
-      0;  ///< standard deviation of full-scale linear light 1; at light L it is this times sqrt(L)
-  /// Instants of the exposure, each at another place within the pixel; 0: as many as the motion of the image
-  /// needs (exposure_samples.hpp).
+  double shot_noise = 0;       ///< standard deviation at linear light 1; at light L, multiplied by sqrt(L)
+  /// Number of instants of the exposure, each at another sub-pixel position; 0: by the image motion
+  /// (exposure_samples.hpp).
   int blur_samples = 0;
-  double gain = 1;             ///< factor on all light, on top of the drift
-  double amplifier_gain = 1;   ///< the part of it that amplifies noise as well (only with a mosaic)
-  bool covered = false;        ///< no light comes in; the noise stays
-  ColorProcessing processing;  ///< with a mosaic it brings noise of its own, instead of the two above
+  double gain = 1;             ///< factor on all light, in addition to the drift
+  double amplifier_gain = 1;   ///< part of the gain that also amplifies noise (only with a mosaic)
+  bool covered = false;        ///< no light, but noise
+  ColorProcessing processing;  ///< its mosaic has its own noise, which replaces the two above
 };
 
-/// An object that moves before the camera while an image is taken.
+/// A moving object in front of the camera.
 struct MovingObject {
   const render::Renderer& surface;  ///< in the object's own frame
   std::function<SE3(std::int64_t)>
-      T_object_camera{};  ///< at an instant; camera: the one that takes the image
+      T_object_camera{};  ///< pose at an instant; camera: the one that takes the image
 };
 
 enum class DepthNoise {
-  none,    ///< exact to the quantum
+  none,    ///< exact up to quantisation
   handa,   ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
            ///< depth_noise_handa.cpp
   zr300,   ///< active stereo of the ZR300; see depth_noise_zr300.cpp
-  kinect,  ///< a Kinect as in TUM freiburg1; also there
+  kinect,  ///< a Kinect as in TUM freiburg1; also in depth_noise_zr300.cpp
 };
 
-/// What the sensor of that noise matches in, for an image of that camera: 640 columns of a Kinect (and where
-/// there is no noise), the image's own of a ZR300.
+/// Native resolution of the sensor with that noise for an image of the camera: 640 columns for a Kinect (and
+/// without noise), the image size for a ZR300.
 [[nodiscard]] NativePixels native_pixels(DepthNoise noise, const PinholeCamera& camera);
 
-/// A depth camera. Row r is taken at capture + (r / (height - 1) - 1/2) * readout_s.
+/// A depth camera. Row r is captured at capture + (r / (height - 1) - 1/2) * readout_s.
 struct DepthSensor {
   PinholeCamera camera;  ///< with size; depth has no distortion
   double readout_s = 0;
   double units_per_metre = 1000;
   DepthNoise noise = DepthNoise::none;
-  DepthErrors errors;  ///< come before the noise
+  DepthErrors errors;  ///< applied before the noise
 };
 
-/// The image that the sensor takes around capture_ns (middle of the exposure of its middle row).
-/// rays: of sensor.camera. T_body_camera places the camera on the body that the spline moves. The same seed
-/// and frame give the same bytes. before: may be null.
+/// Renders the image around capture_ns (middle of the exposure of the middle row). rays: of sensor.camera.
+/// T_body_camera: mounting on the body of the spline. Deterministic for seed and frame. before: may be null.
 [[nodiscard]] ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
                                       const rays::RayField& rays, const synthetic_imu::PoseSpline& motion,
                                       const SE3& T_body_camera, std::int64_t capture_ns, std::uint64_t seed,
                                       std::uint64_t frame, const Workers& workers,
                                       const MovingObject* before = nullptr);
 
-/// Raw values as the format stores them (0: no measurement, or beyond 65535 units).
+/// Raw values in the format of the recording (0: no measurement, or more than 65535 units).
 [[nodiscard]] Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,
                                                const synthetic_imu::PoseSpline& motion,
                                                const SE3& T_body_camera, std::int64_t capture_ns,
                                                std::uint64_t seed, std::uint64_t frame,
                                                const Workers& workers, const MovingObject* before = nullptr);
 
-/// The factor on all light at a time: 1 + drift s(t), with s a sum of three sines (periods 3.1 s, 7.3 s and
-/// 17 s, phases from the seed) that stays within -1 and 1.
+/// Gain at a time: 1 + drift s(t), with s in [-1, 1] the sum of three sines (periods 3.1 s, 7.3 s and 17 s,
+/// phases from the seed).
 [[nodiscard]] double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed);
 
-/// Where the camera is when row `row` is at the middle of its exposure.
+/// Instant of the middle of the exposure of a row.
 [[nodiscard]] std::int64_t row_time_ns(std::int64_t capture_ns, double readout_s, int row, int height_px);
 
 }  // namespace fusebench::simulator::sensors

@@ -1,4 +1,4 @@
-// A strapped-down inertial sensor with errors, on a body whose motion is a spline.
+// A strapdown inertial sensor with errors, on a body with a spline motion.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Sensor model: measured = gain * true + bias + noise, cut off at the range.
+/// Sensor model: measured = gain * true + bias + noise, clipped to the range.
 struct ImuErrors {
   synthetic_imu::ImuSensor sensor = synthetic_imu::zr300_imu();  ///< noise, random walks, initial biases
-  Matrix3d gyroscope_gain = Matrix3d::Identity();      ///< scale factors and misalignment of the axes
-  Matrix3d accelerometer_gain = Matrix3d::Identity();  ///< the same
-  double gyroscope_range_radps = radians(1000.0);  ///< a setting of the ZR300's BMI055 (125 to 2000 deg/s)
-  double accelerometer_range_mps2 = 8 * kGravity_mps2;  ///< also (2 to 16 g)
-  double time_offset_s = 0;  ///< the IMU's stamp minus the images' stamp of the same instant
+  Matrix3d gyroscope_gain = Matrix3d::Identity();       ///< scale factors and misalignment of the axes
+  Matrix3d accelerometer_gain = Matrix3d::Identity();   ///< the same
+  double gyroscope_range_radps = radians(1000.0);       ///< ZR300's BMI055 (settings: 125 to 2000 deg/s)
+  double accelerometer_range_mps2 = 8 * kGravity_mps2;  ///< ZR300's BMI055 (settings: 2 to 16 g)
+  double time_offset_s = 0;                             ///< IMU stamp minus image stamp at the same instant
 };
 
-/// The body's true state at one sample.
+/// True state of the body at a sample.
 struct ImuState {
   std::int64_t timestamp_ns = 0;  ///< on the images' clock
   synthetic_imu::Kinematics motion;
@@ -30,11 +30,11 @@ struct ImuState {
 
 struct SimulatedImu {
   std::vector<ImuSample> samples;  ///< on the IMU's clock
-  std::vector<ImuState> states;    ///< one a sample
+  std::vector<ImuState> states;    ///< one for each sample
 };
 
-/// Samples from begin_ns (images' clock) to at least end_ns. Gravity is -9.81 m/s^2 along z of the world. The
-/// same seed gives the same samples.
+/// Samples from begin_ns (image clock) to at least end_ns. Gravity is -9.81 m/s^2 along world z.
+/// Deterministic for a seed.
 [[nodiscard]] SimulatedImu simulate_imu(const synthetic_imu::PoseSpline& body, std::int64_t begin_ns,
                                         std::int64_t end_ns, double rate_hz, const ImuErrors& errors,
                                         std::uint64_t seed);

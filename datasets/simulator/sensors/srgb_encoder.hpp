@@ -1,4 +1,4 @@
-// Light as grey levels, by table.
+// Table for the conversion of light to grey levels.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Grey levels (0 to 255, not rounded) of linear light by table; the error is below 0.01 grey levels.
+/// Grey levels (0 to 255, not rounded) of linear light by a table, with an error below 0.01 grey levels.
 class SrgbEncoder {
  public:
   static const SrgbEncoder& instance() {

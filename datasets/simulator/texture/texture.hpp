@@ -1,5 +1,4 @@
-// A repeating square image of reflectances with a pyramid, so that it can be seen from any distance without
-// aliasing.
+// A periodic square reflectance image with a pyramid for antialiasing at any distance.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,18 +17,18 @@ namespace fusebench::simulator::texture {
 
 class Texture {
  public:
-  /// Square, its side a power of two (checked); linear reflectances 0 to 1. Pixel (0, 0) covers (0, 0) to (1,
-  /// 1) / side.
+  /// Square with a power of two as its side (checked); linear reflectances 0 to 1. Pixel (0, 0) covers (0, 0)
+  /// to (1, 1) / side.
   explicit Texture(const Image<Eigen::Vector3f>& image);
 
   [[nodiscard]] int side() const { return side_; }
   [[nodiscard]] int levels() const { return static_cast<int>(offsets_.size()); }
 
-  /// Reflectances by lane; the fourth component means nothing.
+  /// Reflectances by lane; the fourth component is unused.
   using Samples = std::array<Eigen::Array4f, simd::kLanes>;
 
-  /// At (u, v) in repeats of the image, averaged over about `footprint` texels of the full image (trilinear).
-  /// Sets the samples of the lanes whose bit is set.
+  /// Samples at (u, v) in repeats of the image, averaged over about `footprint` texels of the full image
+  /// (trilinear). Sets the lanes whose bit is set.
   void sample(simd::Float8 u, simd::Float8 v, simd::Float8 footprint, unsigned lanes,
               Samples& samples) const {
     const simd::Float8 level = simd::clamp(log2_piecewise(footprint), 0, static_cast<float>(levels() - 1));
@@ -45,7 +44,7 @@ class Texture {
     }
   }
 
-  /// One place.
+  /// Samples one position.
   [[nodiscard]] Eigen::Array4f sample(float u, float v, float footprint) const {
     Samples samples;
     sample(simd::all_lanes(u), simd::all_lanes(v), simd::all_lanes(footprint), 1, samples);
@@ -53,20 +52,20 @@ class Texture {
   }
 
  private:
-  /// Rows of side + 1 texels, the last of which repeats the first, so that two neighbours are one load.
+  /// Rows of side + 1 texels; the last one repeats the first, so that two neighbours are one load.
   static constexpr int kChannels = 4;
   using Float4 [[gnu::vector_size(16)]] = float;
 
-  /// Base-2 logarithm that is exact at powers of two and linear between them: monotonic, continuous, cheap.
+  /// Piecewise linear base-2 logarithm, exact at powers of two: monotonic and continuous.
   static simd::Float8 log2_piecewise(simd::Float8 x) {
     const auto bits = std::bit_cast<simd::Int8>(x);
     return simd::to_float(bits - (127 << 23)) * 0x1p-23F;
   }
 
-  /// Where the four texels around a place are, two by two.
+  /// The four texels around a position, in pairs.
   struct Places {
     simd::Int8 above, below;   ///< index of the left one
-    simd::Float8 right, down;  ///< shares of the right and the lower ones
+    simd::Float8 right, down;  ///< weights of the right and the lower texels
   };
   [[nodiscard]] Places places(simd::Int8 level, simd::Float8 u, simd::Float8 v) const {
     const auto scale = std::bit_cast<simd::Float8>((127 - level) << 23);  // 2^-level
@@ -94,7 +93,7 @@ class Texture {
   void add_level(const Image<Eigen::Vector3f>& image);
 
   int side_ = 0;
-  std::vector<std::int32_t> offsets_;  // of the levels in texels_: full image first, down to one texel
+  std::vector<std::int32_t> offsets_;  // of the levels in texels_: from the full image to one texel
   std::vector<simd::Half> texels_;     // kChannels each
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Color = Eigen::Vector3f;
 
-/// Colours of furnishings.
+/// Colours of furniture.
 constexpr std::array<std::uint32_t, 14> kPalette = {0x8c2f2b, 0x1f4e79, 0x2f6b4f, 0xd9a441, 0xe8e2d0,
                                                     0x3b3b46, 0xb5651d, 0x6a4c93, 0x4f8a8b, 0xc94f4f,
                                                     0x283845, 0xf2c14e, 0x7d8471, 0xdfd3c3};

@@ -14,8 +14,9 @@ namespace fusebench::peers {
 
 /// One frame as every contestant gets it.
 struct ContestFrame {
-  RgbdFrame frame;     ///< as the recording gives it: undistorted, depth registered to colour
-  RgbdFrame fusible;   ///< as our pipeline fuses it: motion within it undone, depth that it does not trust 0
+  RgbdFrame frame;  ///< as the recording gives it: undistorted, depth registered to colour
+  RgbdFrame
+      fusible;  ///< as our pipeline fuses it: motion within it compensated, depth that it does not trust 0
   SE3 T_world_camera;  ///< as our pipeline estimated it
 };
 

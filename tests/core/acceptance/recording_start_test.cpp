@@ -32,7 +32,7 @@ TEST(RecordingStart, TheFirstTwoFramesAreProcessedAgainOnce) {
   EXPECT_EQ(start.judge(kTracked), StartAction::go_on);
 }
 
-TEST(RecordingStart, ALostSecondFrameTellsNoVelocity) {
+TEST(RecordingStart, ALostSecondFrameGivesNoVelocity) {
   RecordingStart start(kDefaults);
   ASSERT_EQ(start.judge(kFirst), StartAction::go_on);
   EXPECT_EQ(start.judge(kDark), StartAction::go_on);
@@ -78,7 +78,7 @@ TEST(RecordingStart, KeepsTheFirstFrameWhileNothingCanBeSeenAndOnceFramesWereTra
 }
 
 /// With the velocity of the second frame, the second frame is lost: the first time it was tracked by chance.
-TEST(RecordingStart, AStartThatIsLostWhenItIsProcessedAgainIsNone) {
+TEST(RecordingStart, RejectsAStartThatIsLostWhenItIsProcessedAgain) {
   RecordingStart start(kDefaults);
   ASSERT_EQ(start.judge(kFirst), StartAction::go_on);
   ASSERT_EQ(start.judge(kTracked), StartAction::start_again);

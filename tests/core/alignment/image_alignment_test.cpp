@@ -66,7 +66,7 @@ TEST(ImageAlignment, TheGradientIsThatOfTheCost) {
   EXPECT_TRUE(at.by_model.information.isZero());
 }
 
-/// The same grey level everywhere moves no residual by the pose: each is the offset.
+/// A constant grey level gives residuals that do not depend on the pose: each is the offset.
 TEST(ImageAlignment, TheCostOfAUniformOffsetIsHubersOfEachPixel) {
   AlignmentOptions config;
   config.alignment.coarsest_level = 3;

@@ -26,7 +26,7 @@ struct SearchOptions {
   config::IekfConfig iekf;
 };
 
-/// The prediction that the camera stands still at the origin, with some uncertainty of its pose.
+/// Prediction of a camera at rest at the origin, with an uncertain pose.
 filter::GaussianState prediction(const SensorRig& rig, double sigma_rad, double sigma_m) {
   filter::GaussianState prior;
   prior.mean.T_world_imu = prior.mean.T_world_imu_reference = rig.T_imu_camera.inverse();
@@ -54,7 +54,7 @@ struct Search {
         .find(prior, prior.mean.T_world_imu_reference, reference, pyramid, thorough);
   }
 
-  /// How far the pose of a start is from the truth, in pixels at 1 m.
+  /// Error of the pose of a start, in pixels at 1 m.
   double error_px(const filter::GaussianState& prior, const FoundStart& found) const {
     const filter::StateVector delta =
         prior.covariance * filter::measured_combinations(prior.mean).transpose() * found.start;
@@ -119,7 +119,7 @@ TEST(StartSearch, ACameraThatStoppedIsFoundAlthoughItWasPredictedToGoOn) {
   Search search{SE3{}};
   filter::GaussianState prior = prediction(search.rig, 0.1, 0.05);
   prior.mean.T_world_imu.rotation =
-      prior.mean.T_world_imu.rotation * so3_exp({0.0, 0.25, 0.1});  // 60 pixels further
+      prior.mean.T_world_imu.rotation * so3_exp({0.0, 0.25, 0.1});  // 60 pixels further away
   EXPECT_LT(search.error_px(prior, search.find(prior)), 2.0);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"full", "no-imu", "tsdf.voxel_m", "depth.max_m"};
 
-TEST(NearestName, OneThatIsMisspeltIsFound) {
+TEST(NearestName, FindsAMisspeltName) {
   EXPECT_EQ(nearest_name("ful", kNames), "full");
   EXPECT_EQ(nearest_name("no_imu", kNames), "no-imu");
   EXPECT_EQ(nearest_name("flul", kNames), "full") << "neighbours are exchanged";
@@ -23,7 +23,7 @@ TEST(NearestName, ExchangedLettersAreOneMistake) {
   EXPECT_EQ(nearest_name("smi3", std::array<std::string_view, 2>{"se3", "sim3"}), "sim3");
 }
 
-TEST(NearestName, APartOfALongOneIsFoundAlsoMisspelt) {
+TEST(NearestName, FindsAMisspeltPartOfALongName) {
   EXPECT_EQ(nearest_name("voxel", kNames), "tsdf.voxel_m");
   EXPECT_EQ(nearest_name("tsdf.voxl", kNames), "tsdf.voxel_m");
 }
@@ -41,14 +41,14 @@ TEST(NearestName, ABeginningWinsOverWhatIsNearer) {
   EXPECT_EQ(nearest_name("--var", std::array<std::string_view, 1>{"--a-very-long-name"}), "");
 }
 
-TEST(NearestName, WhatIsLikeNothingHasNone) {
+TEST(NearestName, ADissimilarNameHasNoHint) {
   EXPECT_EQ(nearest_name("beauty", kNames), "");
   EXPECT_EQ(nearest_name("zzz", kNames), "");
   EXPECT_EQ(nearest_name("", kNames), "");
   EXPECT_EQ(nearest_name("full", {}), "");
 }
 
-TEST(NearestName, HintsAreSentencesOrNothing) {
+TEST(NearestName, HintsAreSentencesOrEmpty) {
   EXPECT_EQ(nearest_hint("ful", kNames), " (nearest: full)");
   EXPECT_EQ(nearest_hint("zzz", kNames), "");
   EXPECT_EQ(nearest_hint("ful", std::vector<std::string>{"no-imu", "full"}), " (nearest: full)");

@@ -40,7 +40,7 @@ TEST(Parallel, EveryElementIsVisitedOnceInFixedChunks) {
   }
 }
 
-TEST(Parallel, NothingToDoIsFine) {
+TEST(Parallel, AcceptsAnEmptyRange) {
   const Workers workers(2);
   workers.for_chunks(0, 5, [](std::size_t, std::size_t) { FAIL(); });
 }

@@ -23,7 +23,7 @@ DepthImage wall(double phase, double shift_px = 0, int step = 1) {
   return depth_m;
 }
 
-TEST(DepthFernCode, TheSamePlaceLooksAlikeAndAnotherOneDoesNot) {
+TEST(DepthFernCode, CodesAreSimilarForTheSamePlaceOnly) {
   const FernCode code = depth_fern_code(wall(0.5));
   EXPECT_EQ(dissimilarity(code, depth_fern_code(wall(0.5))), 0);
   EXPECT_LT(dissimilarity(code, depth_fern_code(wall(0.5, 8))), 0.3);

@@ -60,7 +60,7 @@ TEST(ColorDrift, NoiseAndASingleJoltAreNone) {
   EXPECT_EQ(jolted.noise(config).rotation_rad, 0.0);
 }
 
-TEST(ColorDrift, NothingBeforeTheLag) {
+TEST(ColorDrift, IsZeroBeforeTheLag) {
   const ColorDriftConfig config;
   ColorDrift drift;
   for (int frame = 0; frame < config.lag_frames; ++frame) drift.observe(Vector6d::Constant(1.0), config);
@@ -69,8 +69,8 @@ TEST(ColorDrift, NothingBeforeTheLag) {
   EXPECT_GT(drift.noise(config).translation_m, 0.0);
 }
 
-/// The largest distance from the truth of a camera that moves along x, after the start, where colour takes
-/// each step for longer than it is by `excess_m`.
+/// The largest position error of a camera that moves along x, after the start, where colour overestimates
+/// each step by `excess_m`.
 double drift_m(double excess_m, const ColorDriftConfig& config) {
   constexpr double kColor_m = 1e-4, kDepth_m = 2e-3, kStep_m = 0.01;
   std::mt19937 random(11);
@@ -111,7 +111,7 @@ TEST(ColorDrift, ColorThatDoesNotFitDepthLosesItsWeight) {
   EXPECT_NEAR(drift_m(0, {}), drift_m(0, off), 0.3 * drift_m(0, off));
 }
 
-/// Between two measurements of the same uncertainty lies half of their distance.
+/// The estimate from two measurements of equal uncertainty is half-way between them.
 TEST(ColorDrift, TheCorrectionIsTheWayFromWhereColorAloneWouldBe) {
   GaussianState state;
   state.mean.T_world_imu.rotation = Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ()));

@@ -71,7 +71,7 @@ class PositionMeasurement final : public PoseMeasurement {
   double information_;
 };
 
-/// The same by stages, which counts what it is asked for.
+/// Measurement in stages that counts its calls.
 class StagedMeasurement final : public PoseMeasurement {
  public:
   explicit StagedMeasurement(PositionMeasurement& one) : one_(one) {}
@@ -113,7 +113,7 @@ TEST(Iekf, AScalarEnergyIsThePapersGainTimesItself) {
   const FilterState expected = plus(prior.mean, StateVector(-gain * energy));
   EXPECT_LT((result.posterior.mean.T_world_imu.translation - expected.T_world_imu.translation).norm(), 1e-9);
   EXPECT_LT((result.posterior.mean.velocity_world_mps - expected.velocity_world_mps).norm(), 1e-9);
-  // Where the energy is least it has no gradient: the posterior is the prior.
+  // The gradient is zero at the minimum of the energy: the posterior is the prior.
   PositionMeasurement at_rest(prior.mean.T_world_imu.translation, kSigma);
   const IekfResult nothing = iekf_update(prior, at_rest, config);
   EXPECT_LT(distance(nothing.posterior.covariance, prior.covariance), 1e-12);
@@ -132,7 +132,7 @@ TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
   EXPECT_EQ(measurement.linearised.back(), 2);
 }
 
-TEST(Iekf, WithoutThePriorInEveryIterationTheMeasurementHasTheLastWord) {
+TEST(Iekf, WithoutThePriorInEveryIterationConvergesToTheMeasurement) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   PositionMeasurement measurement(z, 0.2);  // much less certain than the prediction
@@ -174,13 +174,13 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
 using ByReadout = Eigen::Matrix<double, 3, kReadoutSize>;
 class ReadOutMeasurement final : public PoseMeasurement {
  public:
-  /// undone: errors that the images are free of already.
+  /// compensated: errors that the images are free of already.
   ReadOutMeasurement(Vector3d z, double sigma, const ByReadout& by_readout,
-                     const ReadoutVector& undone = ReadoutVector::Zero())
-      : z_(z - by_readout * undone),
+                     const ReadoutVector& compensated = ReadoutVector::Zero())
+      : z_(z - by_readout * compensated),
         information_(1.0 / (sigma * sigma)),
         by_readout_(by_readout),
-        undone_(undone) {}
+        compensated_(compensated) {}
   MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
     const Vector3d error = poses.T_world_imu_by_model.translation - z_;
     MeasurementQuadratic q;
@@ -190,7 +190,7 @@ class ReadOutMeasurement final : public PoseMeasurement {
     q.readout_by_model.with_pose.bottomRows<3>() = information_ * by_readout_;
     q.readout_by_model.information = information_ * by_readout_.transpose() * by_readout_;
     q.readout_by_model.gradient = information_ * by_readout_.transpose() * error;
-    q.undone = undone_;
+    q.compensated = compensated_;
     return q;
   }
   double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
@@ -202,7 +202,7 @@ class ReadOutMeasurement final : public PoseMeasurement {
   Vector3d z_;
   double information_;
   ByReadout by_readout_;
-  ReadoutVector undone_;
+  ReadoutVector compensated_;
 };
 
 /// z = p + by_readout * errors + noise, by the textbook. The errors of the rate are those against what is
@@ -224,7 +224,7 @@ struct ReadOutUpdate {
       H.block<3, kPoseSize>(0, clone) = -by_rate * carried;
       expected -= by_rate * carried * offset;
     };
-    // Between timing and rates is what is known: it has no error.
+    // The affine term between timing and rates has no error.
     add_rate(kTimingSize + 1, kReferenceRate, prior.mean.reference_rate_offset);
     add_rate(kTimingSize + 1 + kPoseSize, kModelRate, prior.mean.model_rate_offset);
     K = testing::kalman_gain(prior.covariance, H, sigma * sigma * Matrix3d::Identity());
@@ -258,9 +258,9 @@ TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
   const MatrixXd covariance =
       testing::carried(chart_transport(prior.mean, StateVector(expected.delta)),
                        testing::after_update(prior.covariance, expected.K, expected.H));
-  ReadoutVector undone;
-  undone << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
-  for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
+  ReadoutVector compensated;
+  compensated << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
+  for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), compensated}) {
     ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
     EXPECT_TRUE(result.converged);
@@ -296,7 +296,7 @@ TEST(Iekf, WithoutInformationKeepsThePriorToTheLastBit) {
 }
 
 TEST(Iekf, AcceptsASingularPrior) {
-  // The first pose is known exactly: its covariance is zero, and no measurement may move it.
+  // The first pose is exact: its covariance is zero, and no measurement may move it.
   GaussianState prior{some_state(), StateMatrix::Zero()};
   prior.covariance.block<3, 3>(kVelocity, kVelocity).setIdentity();
   PositionMeasurement measurement(Vector3d(5, 5, 5), 0.01);
@@ -353,8 +353,8 @@ class PlaneMeasurement final : public PoseMeasurement {
   const PlaneProblem& problem_;
 };
 
-/// The same cost for Ceres, written apart: |d|^2_P for d in the full chart at the prior is its NormalPrior,
-/// and the planes.
+/// The same cost for Ceres, implemented separately: |d|^2_P for d in the full chart at the prior is its
+/// NormalPrior, plus the planes.
 struct PlaneCost {
   SE3 T_world_imu_prior;
   Vector3d point_imu, plane_point, normal;
@@ -376,7 +376,7 @@ struct PlaneCost {
   }
 };
 
-/// A plane tells nothing but the pose, which leads the error state: the other derivatives are zero.
+/// A plane depends on the pose only, the first part of the error state: the other derivatives are zero.
 class PlaneOfTheState final : public ceres::SizedCostFunction<1, kStateSize> {
  public:
   explicit PlaneOfTheState(const PlaneCost& cost) : by_pose_(new PlaneCost(cost)) {}
@@ -424,7 +424,7 @@ TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
   EXPECT_LT(result.map_cost_posterior, result.map_cost_prior);
 }
 
-/// The position by the reference, linear. Keeps the pose that it is first asked for.
+/// The position by the reference, linear. Linearised at the pose of its first call.
 class PositionByReference final : public PoseMeasurement {
  public:
   explicit PositionByReference(Vector3d z) : z_(std::move(z)) {}

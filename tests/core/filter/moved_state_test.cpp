@@ -47,7 +47,7 @@ TEST(MovedState, ThereAndBackIsTheSame) {
   EXPECT_LT((back.reference_rate - state().reference_rate).norm(), 1e-12);
 }
 
-/// What images measure is relative to the reference and to the model, which move along.
+/// Image measurements are relative to the reference and to the model, which move too.
 TEST(MovedState, MeasurementsStayAsTheyAre) {
   GaussianState before{state(), StateMatrix::Identity()};
   for (int i = 0; i < kStateSize; ++i) before.covariance(i, i) = 1 + i;

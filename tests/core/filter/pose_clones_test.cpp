@@ -45,8 +45,8 @@ GaussianState uncertain_at(const SE3& T, double variance) {
 
 /// A frame that is fused, and that the next patches are cut from.
 GaussianState cut_and_fused(const GaussianState& state, const ModelDrift& drift,
-                            const UndoneReadout& undone = {}) {
-  return cloned_as_reference(fused_into_model(state, drift, undone), undone);
+                            const CompensatedReadout& compensated = {}) {
+  return cloned_as_reference(fused_into_model(state, drift, compensated), compensated);
 }
 
 TEST(PoseClones, AnAnchorGainsTheErrorOfItsOwnImage) {
@@ -65,7 +65,7 @@ TEST(PoseClones, AnAnchorGainsTheErrorOfItsOwnImage) {
   EXPECT_NEAR(std::sqrt(widest(5, 5)), 0.1, 1e-12);
 }
 
-TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
+TEST(PoseClones, ErrorsTakenOverByTheModelStayErrorsInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
     const GaussianState after = cut_and_fused(before, {.share = share});
@@ -76,16 +76,16 @@ TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   }
 }
 
-TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
+TEST(PoseClones, AnAnchoredFrameGivesNoInformationAgainstItself) {
   const GaussianState state = cut_and_fused(uncertain_at(kTo, 1e-4), {});
   const Eigen::MatrixXd measured = testing::carried(measured_combinations(state.mean), state.covariance);
   EXPECT_LT(measured.topLeftCorner(kPoseSize, kPoseSize).norm(), 1e-15);
   EXPECT_NEAR(measured.block(kPoseSize, kPoseSize, kPoseSize, kPoseSize).trace(), 6e-4, 1e-12);
 }
 
-/// Steps of a camera that stands still, seen with noise: against the last frame alone its error grows like a
-/// random walk, against the model it stays; the filter must know both.
-TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
+/// Noisy steps of a camera at rest: against the last frame alone its error grows like a random walk, against
+/// the model it is bounded. The covariance of the filter must agree with both.
+TEST(PoseClones, CovarianceGrowsWithErrorsOfRelativeMeasurements) {
   constexpr int kRuns = 40, kSteps = 50;
   constexpr double kSigma = 1e-3;
   for (const bool by_model : {false, true}) {
@@ -94,12 +94,12 @@ TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
     std::normal_distribution<double> normal(0.0, kSigma);
     for (int run = 0; run < kRuns; ++run) {
       GaussianState state = cut_and_fused(known_at(SE3{}), {});
-      SE3 reference_truth;  // where the reference frame truly is
+      SE3 reference_truth;  // true pose of the reference frame
       for (int step = 0; step < kSteps; ++step) {
         state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += Matrix6d::Identity();  // it may have moved
         Vector6d noise;
         for (int i = 0; i < kPoseSize; ++i) noise[i] = normal(random);
-        // The truth stands still at identity; the patches were cut at the estimate.
+        // The true pose is the identity; the patches were cut at the estimate.
         const SE3 seen = pose_plus(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
         KnownMeasurement measurement(seen, pose_plus(SE3{}, noise), by_model ? 0.0 : kSigma,
                                      by_model ? kSigma : 0.0);
@@ -127,7 +127,7 @@ TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
   state = iekf_update(state, first, IekfConfig{}).posterior;
   EXPECT_GT(state.mean.reference_offset.norm(), 1e-6);
 
-  // It stands still, and the second image says exactly what the first one said.
+  // The camera is at rest, and the second image gives exactly the measurement of the first.
   KnownMeasurement second(kTo, by_model, 1e-3, 1e-3);
   GaussianState again = iekf_update(state, second, IekfConfig{}).posterior;
   GaussianState once = cut_and_fused(uncertain_at(kTo, 1e-6), {});
@@ -139,8 +139,8 @@ TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
 }
 
 TEST(PoseClones, AReferenceThatIsKeptMovesWithTheModel) {
-  // The patches stay with the frame at kFrom while frames at kTo are fused: what colour measures is the same
-  // before and after a fusion, and the pose of the reference in the first camera's world too.
+  // The patches keep the frame at kFrom while frames at kTo are fused. The measurement by colour and the pose
+  // of the reference in the first camera frame do not change with a fusion.
   GaussianState state = cloned_as_reference(uncertain_at(kFrom, 1e-4));
   state.mean.T_world_imu = kTo;
   state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-5 * Matrix6d::Identity();
@@ -165,7 +165,7 @@ TEST(PoseClones, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   EXPECT_NEAR(after.covariance(kPosition, kModelPose + 3), 0.9 * 0.1 * 1e-4, 1e-12);
 }
 
-TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
+TEST(PoseClones, EqualDistortionsGiveNoInformationOnTheMotion) {
   // At the first fusion the whole model has the distortion of the frame; later ones average it away.
   GaussianState state = known_at(kTo);
   state.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();
@@ -197,24 +197,24 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
   EXPECT_EQ(next.mean.reference_rate_offset.norm(), 0.0);
 }
 
-TEST(PoseClones, TheModelKeepsTheReadoutThatWasUndoneInItsFrames) {
-  UndoneReadout undone;
-  undone.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
-  undone.timing_s = {0.021, 0.03, -0.01};
-  const GaussianState first = cut_and_fused(known_at(kTo), {.share = 1}, undone);
-  EXPECT_LT((first.mean.model_readout.rate - undone.rate).norm(), 1e-15);
-  EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * undone.rate).norm(), 1e-15);
-  EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * undone.rate).norm(), 1e-15);
+TEST(PoseClones, TheModelKeepsTheReadoutThatWasCompensatedInItsFrames) {
+  CompensatedReadout compensated;
+  compensated.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
+  compensated.timing_s = {0.021, 0.03, -0.01};
+  const GaussianState first = cut_and_fused(known_at(kTo), {.share = 1}, compensated);
+  EXPECT_LT((first.mean.model_readout.rate - compensated.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * compensated.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * compensated.rate).norm(), 1e-15);
   EXPECT_EQ(first.mean.reference_color_readout_s, 0.021);
   // A frame at rest averages half of it away.
   const GaussianState second = cut_and_fused(first, {.share = 0.5});
-  EXPECT_LT((second.mean.model_readout.rate - 0.5 * undone.rate).norm(), 1e-15);
-  EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * undone.rate).norm(), 1e-15);
+  EXPECT_LT((second.mean.model_readout.rate - 0.5 * compensated.rate).norm(), 1e-15);
+  EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * compensated.rate).norm(), 1e-15);
   EXPECT_EQ(second.mean.reference_color_readout_s, 0.0);
 }
 
 TEST(PoseClones, ADisplacedModelTurnsVelocityAndGravity) {
-  // The model turned by a small angle about the pose: what is known against it is turned in the world.
+  // The model is rotated by a small angle about the pose; quantities relative to it are rotated in the world.
   GaussianState state = known_at(kTo);
   state.mean.gravity_direction_world = Vector3d(0.2, 0.9, -0.4).normalized();
   const double sigma = 1e-3;

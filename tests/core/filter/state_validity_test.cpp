@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-TEST(StateValidity, AnyNumberThatIsNoneIsFound) {
+TEST(StateValidity, DetectsAnyNan) {
   ASSERT_TRUE(is_valid(GaussianState{}));
   for (int i = 0; i < kStateSize; ++i) {
     for (const double absurd : {kNaN, std::numeric_limits<double>::infinity(), -1e20}) {

@@ -37,7 +37,7 @@ TEST(StageTimes, StretchesOfAStageAddUp) {
   EXPECT_DOUBLE_EQ(times.spans()[4].time.milliseconds(), 3);
 }
 
-TEST(StageTimes, SumsKnowWhatHasNoRoom) {
+TEST(StageTimes, SumsIncludeSpansBeyondTheCapacity) {
   StageTimes times;
   constexpr int kMany = static_cast<int>(StageTimes::kMostSpans) + 5;
   for (int i = 0; i < kMany; ++i) times.add(span_of(Stage::fuse, 2 * i, 2 * i + 1));

@@ -149,7 +149,7 @@ TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
     EXPECT_EQ(*changed, mode == config::LoopMode::final);
     const Trajectory final = loops.corrected_trajectory();
     ASSERT_EQ(final.size(), online.size());
-    if (!*changed) {  // as the tracker found itself
+    if (!*changed) {  // by self-relocalisation
       for (std::size_t k = 0; k < final.size(); ++k)
         EXPECT_LT(pose_minus(final[k].T_world_camera, online[k].T_world_camera).norm(), 1e-9) << k;
       continue;
@@ -163,8 +163,8 @@ TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
   }
 }
 
-/// The tracker is lost, and found in each of the last frames, none of which is fused, as in the dark: dead
-/// reckoning is off by that, and claims it.
+/// The tracker is lost and relocalised in each of the last frames, none of which is fused (darkness): dead
+/// reckoning has that error and claims it.
 constexpr int kFoundInTheDark = 50, kEndInTheDark = 56;
 const SE3 kAstray{so3_exp({0, 0.1, 0}), {0.5, 0, 0}};
 
@@ -187,8 +187,8 @@ void run_into_the_dark(LoopClosure& loops, const std::vector<RgbdFrame>& frames,
   }
 }
 
-/// Their poses are those of the place that they were found by, wherever it moves, and not of dead reckoning.
-TEST_F(Loops, FramesThatWereFoundAndNotFusedMoveWithTheirPlace) {
+/// Their poses follow that of the matched place, not dead reckoning.
+TEST_F(Loops, RelocalisedFramesWithoutFusionMoveWithTheirPlace) {
   const config::Config config = configuration(config::LoopMode::final);
   LoopClosure loops(config, rig_);
   run_into_the_dark(loops, frames(), stamp_ns(kLost - 1));  // by the last place, which has drifted the most
@@ -216,8 +216,9 @@ TEST_F(Loops, FramesThatWereFoundAndNotFusedMoveWithTheirPlace) {
   }
 }
 
-/// Each of those frames is found from the estimate of the one before: dead reckoning has added nothing more.
-TEST_F(Loops, WhatDeadReckoningAddsIsNotCountedAgainInEachFoundFrame) {
+/// Each of those frames is relocalised from the estimate of the previous one: dead reckoning adds no further
+/// covariance.
+TEST_F(Loops, CountsDeadReckoningOnceForSeveralRelocalisedFrames) {
   const config::Config config = configuration(config::LoopMode::detect);
   LoopClosure loops(config, rig_);
   run_into_the_dark(loops, frames(), stamp_ns(0));
@@ -227,11 +228,11 @@ TEST_F(Loops, WhatDeadReckoningAddsIsNotCountedAgainInEachFoundFrame) {
 }
 
 /// Images and depth do not show that the two frames are of one place.
-TEST_F(Loops, WhatOnlyTheTrackerSaysIsToldApart) {
+TEST_F(Loops, MarksEdgesOfTheTrackerAlone) {
   const config::Config config = configuration(config::LoopMode::detect);
   LoopClosure loops(config, rig_);
   loops.add_fused(frames().front(), estimate_of(0, false), 0);
-  const filter::GaussianState found = estimate_of(30, false);  // looks the other way
+  const filter::GaussianState found = estimate_of(30, false);  // opposite viewing direction
   loops.add_relocalisation(found, found, stamp_ns(0));
   loops.add_fused(frames()[30], found, 0);
   ASSERT_EQ(loops.candidates().size(), 1U);
@@ -240,7 +241,7 @@ TEST_F(Loops, WhatOnlyTheTrackerSaysIsToldApart) {
   testing::expect_contains(candidate_table(loops), ",tracker,accepted,");
 }
 
-TEST_F(Loops, AFalseOneIsDroppedWhereOthersSaySo) {
+TEST_F(Loops, DropsAFalseLoopThatOthersContradict) {
   const config::Config config = configuration(config::LoopMode::final);
   LoopClosure loops(config, rig_);
   run(loops, false, frames());
@@ -265,7 +266,7 @@ TEST_F(Loops, AFalseOneIsDroppedWhereOthersSaySo) {
     EXPECT_EQ((*poses)[k].T_world_camera.translation, (*expected)[k].T_world_camera.translation) << k;
 }
 
-/// Where the camera of an estimate is a moment later.
+/// Camera pose of the estimate a moment later.
 SE3 T_world_camera_after(const filter::GaussianState& estimate, const SensorRig& rig, double dt_s) {
   const filter::FilterState& s = estimate.mean;
   const SE3 T_world_imu{s.T_world_imu.rotation * so3_exp(dt_s * s.angular_velocity_imu_radps),
@@ -317,7 +318,7 @@ TEST_F(Loops, AnErrorOfTheInstantIsAlongTheMotion) {
   EXPECT_LT((added - expected).norm(), 2e-3 * expected.norm()) << added << "\n\n" << expected;
 }
 
-/// Where nothing looks alike, as in the dark, the poses so far say what to compare with.
+/// Without similar appearance (darkness), the candidates follow from the current poses.
 TEST_F(Loops, ThePathLeadsToPlacesThatAppearanceDoesNotFind) {
   config::Config config = configuration(config::LoopMode::final);
   config.loops.max_dissimilarity = 0.05;
@@ -348,7 +349,7 @@ TEST_F(Loops, AStateIsCorrectedAsItsPoseIs) {
 }
 
 /// The estimate moves along as a caller's does.
-TEST_F(Loops, OnlineCorrectsTheWorldOfTheEstimate) {
+TEST_F(Loops, OnlineCorrectsTheFrameOfTheEstimate) {
   config::Config config = configuration(config::LoopMode::online);
   config.loops.online_every = 20;
   LoopClosure loops(config, rig_);
@@ -376,7 +377,7 @@ TEST_F(Loops, OnlineCorrectsTheWorldOfTheEstimate) {
   EXPECT_GE(corrections, 1);
   ASSERT_TRUE(loops.close().value());
   EXPECT_LT(error_m(loops.corrected_trajectory()), 0.6 * error_m(online));
-  // What is known between places does not depend on what was corrected on the way.
+  // Edges between places do not depend on online corrections.
   LoopClosure at_the_end(config_final_, rig_);
   run(at_the_end, true, frames());
   ASSERT_TRUE(at_the_end.close().value());

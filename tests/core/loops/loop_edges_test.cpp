@@ -68,7 +68,7 @@ TEST(LoopEdges, AreAcceptedWithinDriftAloneAndBeyondItWithSupport) {
       << "32 sigmas: nothing supports that";
 }
 
-TEST(LoopEdges, ATrackerThatFoundItselfIsSupportEnough) {
+TEST(LoopEdges, AcceptsASelfRelocalisation) {
   const std::vector<Place> places = places_along_x();
   for (const LoopEvidence evidence : {LoopEvidence::pair_and_tracker, LoopEvidence::tracker_alone}) {
     LoopCandidate near = verified(places, 0, 36, {0, 1.5, 0});
@@ -79,7 +79,7 @@ TEST(LoopEdges, ATrackerThatFoundItselfIsSupportEnough) {
   }
 }
 
-/// That both are at the same wrong door would make them agree.
+/// Both at the same wrong door would agree with each other.
 TEST(LoopEdges, ATrackerAloneSupportsNoOther) {
   const std::vector<Place> places = places_along_x();
   LoopCandidate found = verified(places, 0, 36, {0, 1.5, 0});

@@ -27,7 +27,7 @@ Relocalisation found_again(const SE3& T_odometry_camera, double predicted_m, dou
 
 double apart(const SE3& a, const SE3& b) { return pose_minus(a, b).norm(); }
 
-TEST(OdometryWorld, GoesOnAsPredictedWhileTheCurrentOneMoves) {
+TEST(OdometryWorld, ContinuesAsPredictedWhileTheCurrentFrameMoves) {
   OdometryWorld world;
   EXPECT_LT(apart(world.T_current_camera(kOdometry, 0), kOdometry), 1e-12);
   world.relocalise(found_again(kOdometry, 0.1, 0.01), kFoundAt, {kOdometry, covariance_by_axis(0.01, 0.01)});
@@ -39,7 +39,7 @@ TEST(OdometryWorld, GoesOnAsPredictedWhileTheCurrentOneMoves) {
   EXPECT_LT(apart(world.T_relocalised_camera(kOdometry, 1), kFoundAt), 1e-12) << "a correction is none";
 }
 
-TEST(OdometryWorld, CountsWhatDeadReckoningAddedOnce) {
+TEST(OdometryWorld, CountsDeadReckoningOnce) {
   OdometryWorld world;
   EXPECT_EQ(world.lost_covariance_at(kOdometry).norm(), 0);
   const OdometryPose last{kOdometry, covariance_by_axis(0.01, 0.02)};
@@ -53,7 +53,7 @@ TEST(OdometryWorld, CountsWhatDeadReckoningAddedOnce) {
   EXPECT_LT((world.lost_covariance_at(kOdometry) - lost).norm(), 1e-9);
 }
 
-/// How an error of one pose moves another one that is rigidly connected with it, by small displacements.
+/// Derivative of a rigidly connected pose by the error of another one, by small displacements.
 Matrix6d carried_by(const SE3& from, const SE3& to) {
   constexpr double kStep = 1e-6;
   Matrix6d jacobian;
@@ -64,7 +64,7 @@ Matrix6d carried_by(const SE3& from, const SE3& to) {
   return jacobian;
 }
 
-TEST(OdometryWorld, DeadReckoningOverAWayAddsNothingOfTheErrorThatItBeganWith) {
+TEST(OdometryWorld, DeadReckoningAddsNothingOfItsInitialError) {
   OdometryWorld world;
   const SE3 last = kOdometry;
   const SE3 found_at = kOdometry * SE3{so3_exp({0.3, -0.1, 0.2}), {0.5, 1.0, -2.0}};
@@ -75,7 +75,7 @@ TEST(OdometryWorld, DeadReckoningOverAWayAddsNothingOfTheErrorThatItBeganWith) {
   found.predicted_covariance = carried * before * carried.transpose() + added;
   world.relocalise(found, kFoundAt, {last, before});
   EXPECT_LT((world.lost_covariance_at(found_at) - added).norm(), 1e-6);
-  // It is an error of the world of the odometry: seen from elsewhere, its rotation has a lever arm.
+  // The error is in the odometry frame: at another position its rotation has a lever arm.
   const Matrix6d back = carried_by(found_at, last);
   EXPECT_LT((world.lost_covariance_at(last) - back * added * back.transpose()).norm(), 1e-5);
 }

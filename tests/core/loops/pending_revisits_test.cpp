@@ -26,7 +26,8 @@ struct RevisitOptions {
 
 constexpr double kWall_m = 1.5;
 
-/// A camera before a wall that was fused long ago. Its right half is new where `seen_columns` says so.
+/// A camera in front of a wall that was fused long ago. Columns of its right half are new according to
+/// `seen_columns`.
 struct RevisitedWall {
   explicit RevisitedWall(int seen_columns) {
     config.loops.mode = config::LoopMode::online;
@@ -114,7 +115,7 @@ TEST(PendingRevisits, WaitsForALoopOnlySoLong) {
   EXPECT_TRUE(wall.to_fuse(wall.at(20, kWall_m + 0.06)));
   EXPECT_TRUE(wall.to_fuse(wall.at(20 + longest_s - 0.1, kWall_m + 0.06)));
   EXPECT_FALSE(wall.to_fuse(wall.at(20 + longest_s + 0.1, kWall_m + 0.06)));
-  // What fits in between is another revisit.
+  // A fitting frame in between starts a new revisit.
   EXPECT_FALSE(wall.to_fuse(wall.at(20 + longest_s + 0.2, kWall_m)));
   EXPECT_TRUE(wall.to_fuse(wall.at(20 + longest_s + 0.3, kWall_m + 0.06)));
 

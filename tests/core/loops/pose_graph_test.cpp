@@ -82,7 +82,7 @@ TEST(PoseGraph, ALoopTakesMostOfTheDriftAway) {
   EXPECT_LT(after, 0.6 * before);
 }
 
-TEST(PoseGraph, ResidualsOfTheTruthHaveSixDegreesOfFreedom) {
+TEST(PoseGraph, ResidualsOfTheGroundTruthHaveSixDegreesOfFreedom) {
   const std::vector<SE3> truth = circle();
   double sum = 0;
   std::size_t edges = 0;

@@ -81,7 +81,7 @@ void expect_same(PatchMeasurement& kept, PatchMeasurement& fresh) {
   EXPECT_EQ(kept.tracked_pixels().intensity.size(), fresh.tracked_pixels().intensity.size());
 }
 
-TEST(PatchMeasurement, NothingOfAnEarlierFrameShows) {
+TEST(PatchMeasurement, DoesNotDependOnAnEarlierFrame) {
   const Scene scene;
   const std::vector<Patch> many = scene.cut(60, Deformation::pixelwise);
   const std::vector<Patch> rigid = scene.cut(60, Deformation::rigid_square);
@@ -107,7 +107,7 @@ TEST(PatchMeasurement, PatchesFindTheirOwnPlaceFromAWrongPrediction) {
   scene.config.terms.deformation = Deformation::rigid_square;
   const std::vector<Patch> patches = scene.cut(40, Deformation::rigid_square);
   PatchMeasurement measurement(scene.config, scene.rig, scene.workers);
-  // The same frame again, but the prediction is off by about 3 pixels: each square must go back to its place.
+  // The same frame again with a prediction error of about 3 pixels: each square must return to its position.
   measurement.observe(scene.first.observed(), patches, {});
   static_cast<void>(measurement.linearise({}, measurement.stages() - 1, false));
   measurement.move_patches_alone(SE3{so3_exp({0.006, -0.009, 0}), {0, 0, 0}});
@@ -185,7 +185,7 @@ TEST(PatchMeasurement, TheDepthOfAFrameCountsForALimitedNumberOfMeasurements) {
   EXPECT_TRUE((limited.sum.by_model.information * limited.depth_variance)
                   .isApprox(free.sum.by_model.information * free.depth_variance, 1e-9));
   expect_same(free.sum.by_reference, limited.sum.by_reference);
-  // Without an IMU nothing else tells how far the camera has turned.
+  // Without an IMU the rotation of the camera is observable by images only.
   scene.config.terms.prior = Prior::constant_velocity;
   EXPECT_EQ(measured_near(scene, patches, 2).depth_variance, free.depth_variance);
 }

@@ -30,32 +30,32 @@ ReadoutMotion some_motion() {
   return motion;
 }
 
-/// How far a pose moves until a row is read that is `share` of the image below the middle.
+/// Motion of a pose until the read-out of the row at `share` of the image height below the middle.
 Vector6d moved(double share, double readout_s, double delay_s, const Vector6d& rate) {
   return (share * readout_s + delay_s) * rate;
 }
 
-/// By how much errors of the read-out displace a patch's pose, if the images were compensated without them.
+/// Displacement of a patch's pose by errors of the read-out, if the images were compensated without them.
 Vector6d displaced_color(const PatchRows& rows, const filter::ReadoutVector& errors) {
   const ReadoutMotion motion = some_motion();
   const double readout_s = motion.color_readout_s + errors[0];
-  const double undone_s = motion.color_readout_s - errors[3] * (motion.color_readout_s - 0.022);
+  const double compensated_s = motion.color_readout_s - errors[3] * (motion.color_readout_s - 0.022);
   const auto rate = errors.segment<6>(4);
   return moved(rows.now, readout_s, 0, motion.rate + rate) -
          moved(rows.reference, readout_s, 0, motion.reference_rate) -
          (moved(rows.now, motion.color_readout_s, 0, motion.rate) -
-          moved(rows.reference, undone_s, 0, motion.reference_rate));
+          moved(rows.reference, compensated_s, 0, motion.reference_rate));
 }
 Vector6d displaced_depth(const PatchRows& rows, const filter::ReadoutVector& errors) {
   const ReadoutMotion motion = some_motion();
   const double readout_s = motion.depth_readout_s + errors[1];
   const double delay_s = motion.depth_delay_s + errors[2];
-  const double undone_readout_s = motion.depth_readout_s - errors[3] * (motion.depth_readout_s - 0.014);
-  const double undone_delay_s = motion.depth_delay_s - errors[3] * (motion.depth_delay_s + 0.004);
+  const double compensated_readout_s = motion.depth_readout_s - errors[3] * (motion.depth_readout_s - 0.014);
+  const double compensated_delay_s = motion.depth_delay_s - errors[3] * (motion.depth_delay_s + 0.004);
   return moved(rows.now, readout_s, delay_s, motion.rate + errors.tail<6>()) -
          moved(rows.now, readout_s, delay_s, motion.model.rate) -
          (moved(rows.now, motion.depth_readout_s, motion.depth_delay_s, motion.rate) -
-          moved(rows.now, undone_readout_s, undone_delay_s, motion.model.rate));
+          moved(rows.now, compensated_readout_s, compensated_delay_s, motion.model.rate));
 }
 
 TEST(PatchReadout, ErrorsDisplaceAPatchByTheMotionUntilItsRow) {
@@ -74,13 +74,13 @@ TEST(PatchReadout, ErrorsDisplaceAPatchByTheMotionUntilItsRow) {
   }
 }
 
-TEST(PatchReadout, ColourOfTwoFramesInOneMotionSaysNothingOfTheTiming) {
+TEST(PatchReadout, ColourOfTwoFramesInOneMotionGivesNoTiming) {
   ReadoutMotion motion = some_motion();
   motion.tells_color_readout = false;
   for (const PoseByReadout& map : color_displacement(motion)) EXPECT_EQ(map.col(0).norm(), 0.0);
 }
 
-TEST(PatchReadout, DepthAgainstAModelOfTheSameMotionSaysNothingOfTheTiming) {
+TEST(PatchReadout, DepthAgainstAModelOfTheSameMotionGivesNoTiming) {
   ReadoutMotion motion = some_motion();
   motion.model = {motion.rate, motion.depth_readout_s * motion.rate, motion.depth_delay_s * motion.rate};
   for (const PoseByReadout& map : depth_displacement(motion))

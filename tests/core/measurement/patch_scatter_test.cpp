@@ -70,7 +70,7 @@ TEST(PatchScatter, UnitsOfThePoseDoNotMatter) {
 }
 
 TEST(PatchScatter, ClustersOfOnePlaneHaveNoInformationAlongIt) {
-  // Point-to-plane on one plane: rank three. The factor is found in what is seen.
+  // Point-to-plane on one plane: rank three. The factor is estimated from the observable directions.
   std::vector<PoseQuadratic> flat = clusters(60, 9.0, 3);
   Matrix6d seen = Matrix6d::Zero();
   seen.topLeftCorner<2, 2>().setIdentity();

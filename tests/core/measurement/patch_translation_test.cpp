@@ -50,7 +50,7 @@ struct Square {
   std::vector<WarpedLanes> warped;
 };
 
-TEST(PatchTranslation, IsFoundBack) {
+TEST(PatchTranslation, RecoversAKnownShift) {
   const GreyImage image = texture(true);
   Square square(image);
   const Vector2d off_px(1.7, -2.3);

@@ -25,7 +25,7 @@ struct ScaleOptions {
   GeometricConfig geometric;
 };
 
-/// Patches of residuals that are `sigma` times as large as the scale says, with a share of gross outliers.
+/// Patches with residuals of `sigma` times the scale and a share of gross outliers.
 std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, const ScaleOptions& config,
                                    double outliers, unsigned seed) {
   std::mt19937 random(seed);
@@ -71,7 +71,7 @@ TEST(ResidualScale, OutliersCountLittle) {
   EXPECT_LT(after_frames(1.0, 0.05).geometric, 2.3);
 }
 
-TEST(ResidualScale, RejectedPatchesTellNothingAndTheScaleIsBounded) {
+TEST(ResidualScale, IgnoresRejectedPatchesAndBoundsTheScale) {
   const ScaleOptions config;
   std::vector<PatchOutcome> rejected = outcomes(100.0, {}, config, 0.0, 1);
   for (PatchOutcome& outcome : rejected) outcome.accepted = false;

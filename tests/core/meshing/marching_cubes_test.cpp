@@ -30,8 +30,8 @@ constexpr double kMinWeight = 1.0;
 
 using Edge = std::pair<std::uint64_t, std::uint64_t>;
 
-// How often each directed edge occurs. In a closed, consistently oriented surface: once, and its reverse
-// once.
+// Number of occurrences of each directed edge. In a closed, consistently oriented surface: once, and its
+// reverse once.
 template <class Triangles>
 std::map<Edge, int> directed_edges(const Triangles& triangles) {
   std::map<Edge, int> edges;
@@ -59,7 +59,7 @@ struct Accuracy {
   std::size_t vertices = 0;
 };
 
-// Distance of the vertices to the scene's surface, of those that `counts` says.
+// Distance of the vertices accepted by `counts` to the surface of the scene.
 template <class Counts>
 Accuracy accuracy(const Mesh& mesh, const AnalyticScene& scene, const Counts& counts) {
   Accuracy result;
@@ -202,8 +202,8 @@ Mesh mesh_of_wall(const Vector3d& direction) {
   return extract_mesh(volume, 0.5, Workers(1));
 }
 
-// The distance is linear along each edge of the lattice, so that its zero is found exactly. What remains is
-// the rounding of stored distances, 2^-11 of up to a voxel, and single precision.
+// The distance is linear along each lattice edge, so its zero is exact. The rest is the rounding of stored
+// distances, 2^-11 of up to a voxel, and single precision.
 TEST(MarchingCubes, PutsTheVerticesOfAWallOntoIt) {
   for (const Vector3d& direction :
        {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0), Vector3d(0, 0, 1),
@@ -330,8 +330,8 @@ TEST(MarchingCubes, TheLeastWeightIsEnough) {
   EXPECT_TRUE(extract_mesh(volume, 1.001 * weight, Workers(1)).triangles.empty());
 }
 
-/// Each vertex lies on an edge of the lattice, where the distance changes its sign: the gradients by central
-/// differences at both ends, weighed by the distances to them.
+/// Each vertex is on a lattice edge where the distance changes its sign. Its normal is the mean of the
+/// central differences at both ends, weighted by the distances to them.
 TEST(MarchingCubes, NormalsAreInterpolatedBetweenTheGradientsOfBothVoxels) {
   const AnalyticScene scene{{AnalyticSphere{{0.0137, -0.0211, 0.0073}, 0.12, {180, 90, 30}}}};
   const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around({0.0137, -0.0211, 0.0073}, 0.8, 24));
@@ -376,7 +376,7 @@ TEST(MarchingCubes, DoesNotDependOnTheOrderOfStorage) {
       {AnalyticSphere{{0, 0, 1}, 0.3, {9, 9, 9}}, AnalyticSphere{{0, 0, -1}, 0.3, {9, 9, 9}}}};
   const SE3 ahead = look_at({0, 0, 0}, {0, 0, 1});
   const SE3 behind = look_at({0, 0, 0}, {0, 0, -1});
-  // Voxels so small that every pixel is looked at: else which ones are depends on a frame's number.
+  // With such small voxels every pixel is used; otherwise the selected pixels depend on the frame number.
   const TsdfConfig tsdf{.voxel_m = 0.006};
   const TsdfVolume first = fuse(scene, kMarchCamera, {ahead, behind}, tsdf);
   const TsdfVolume second = fuse(scene, kMarchCamera, {behind, ahead}, tsdf);

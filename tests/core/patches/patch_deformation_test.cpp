@@ -196,7 +196,7 @@ TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
   }
 }
 
-/// How many pixels of a patch behind a near one, in the same cells, are visible.
+/// Number of visible pixels of a patch behind a near one in the same cells.
 std::size_t visible_behind(double near_m, double behind_m, const DepthConfig& depth,
                            ShrinkTest rule = ShrinkTest::depth_jump) {
   std::vector<Patch> patches = {cut({100, 120}, [&](int, int) { return near_m; }),
@@ -293,7 +293,7 @@ TEST(PatchDeformation, RigidSquareMovesByItsCentreAlone) {
   for (std::size_t i = 0; i < warped.size(); ++i) {
     const auto key = patch.levels[0].pixels[i].reference_pixel;
     EXPECT_NEAR(warped[i].pixel_px.x(), key % 320 - 240.0 * 0.05 / 2.0,
-                kTolerance_px);  // the centre lies on the far plane
+                kTolerance_px);  // the centre is on the far plane
     EXPECT_NEAR(warped[i].pixel_px.y(), key / 320, kTolerance_px);
   }
 }

@@ -25,8 +25,8 @@ const DepthConfig kDepth;
 
 TsdfVolume fused_room() { return fuse(room_with_a_ball(), kCamera, {SE3{}}); }
 
-/// Patches of a frame of the room, up to twenty, with holes in what was measured, and errors too large to
-/// search beside.
+/// Up to twenty patches of a frame of the room, with holes in the depth and with errors too large for the
+/// local search.
 struct Cut {
   TsdfVolume model = fused_room();
   std::vector<ExpectedSurface> pixels;

@@ -117,7 +117,7 @@ TEST(Patches, ASurfaceIsUsableWithinThreeSigmasOfTheMeasurement) {
 }
 
 TEST(Patches, NormalsOfTheFrameAreThoseOfThePlane) {
-  // A plane with a known normal, seen by a turned camera.
+  // A plane with a given normal in the view of a rotated camera.
   const PinholeCamera camera = testing::small_camera();
   const Vector3d normal = Vector3d(0.3, -0.2, -1).normalized();
   DepthImage depth_m(camera.width_px, camera.height_px, 0);
@@ -159,7 +159,7 @@ TEST(Patches, CoarsePixelsWithoutMeasuredDepthAreLeftOut) {
   }
 }
 
-TEST(Patches, WithoutAnyMeasuredDepthThePatchTrustsTheModel) {
+TEST(Patches, WithoutMeasuredDepthThePatchUsesTheModel) {
   FusedFrame scene;
   constexpr std::array<int, 2> kMiddle = {220, 60};
   for (int y = 0; y < 130; ++y) {

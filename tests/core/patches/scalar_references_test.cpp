@@ -133,7 +133,7 @@ TEST(ScalarReferences, BicubicSampleIsExactOnAParabolaAndSmooth) {
   }
 }
 
-/// Where samples of the shifted image are most like the reference: Gauss-Newton over the shift.
+/// Shift with the best match of the shifted image and the reference, by Gauss-Newton.
 template <typename Sampler>
 double aligned_shift(const GreyImage& reference, const GreyImage& shifted, Sampler&& sample) {
   double shift = 0;

@@ -69,7 +69,7 @@ TEST(DenseAlignment, DepthAloneFindsThePoseOfARolledCamera) {
   EXPECT_LT((found->T_known_query.translation - rolled.translation).norm(), 0.006);
 }
 
-/// As after a second without images: 30 cm and 7 degrees off.
+/// Error after a second without images: 30 cm and 7 degrees.
 TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
   const config::Config config;
   const SmallImages known = appearance_at(kCorner, config).small;
@@ -150,7 +150,7 @@ TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
   EXPECT_NE(other.reason.find("intensities correlate by -"), std::string::npos) << other.reason;
 }
 
-TEST(PlaceVerification, DepthRefinesWhatFeaturesSay) {
+TEST(PlaceVerification, DepthRefinesThePoseOfFeatures) {
   const config::Config config;
   const Appearance known = appearance_at(kCorner, config);
   const Appearance query = appearance_at(kCorner * kTrue, config);

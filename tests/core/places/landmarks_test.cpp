@@ -36,7 +36,7 @@ Landmarks seen_from(const SE3& T_room_camera, const PinholeCamera& camera) {
   return coarse_landmarks_of(frame.grey, frame.depth_m, camera, kMostFeatures, kFeatureOptions, {});
 }
 
-TEST(CoarseLandmarks, TellThePoseOfAnotherView) {
+TEST(CoarseLandmarks, GiveThePoseOfAnotherView) {
   for (const int width_px : {320, 640}) {
     const PinholeCamera camera = camera_of(width_px);
     const SE3 T_known_query{so3_exp({0.03, -0.08, 0.05}), {0.1, -0.05, 0.08}};

@@ -14,7 +14,7 @@ namespace {
 
 constexpr PinholeCamera kCertaintyCamera{640, 480, 520, 520, 319.5, 239.5};
 
-/// What is seen in a part of the image.
+/// Points in a part of the image.
 struct View {
   double width_px = 640;
   double height_px = 480;
@@ -22,7 +22,7 @@ struct View {
   int wrong = 20;
   double noise_px = 0.5;
   double scale = 1;         ///< pixels that corners are wide
-  double distance_m = 2.0;  ///< the world is scaled with it
+  double distance_m = 2.0;  ///< scales the whole scene
 };
 
 bool is_certain(const View& view, const config::RelocalisationConfig& config = {}) {
@@ -52,7 +52,7 @@ TEST(PlaceCertainty, AWholeViewIsCertainAtAnyDistance) {
 
 TEST(PlaceCertainty, FewPointsAreNot) { EXPECT_FALSE(is_certain({.right = 20, .wrong = 0})); }
 
-TEST(PlaceCertainty, HowManyPointsAreAskedForIsAnOption) {
+TEST(PlaceCertainty, RequiresTheConfiguredNumberOfPoints) {
   using config::RelocalisationConfig;
   EXPECT_TRUE(is_certain({.right = 20, .wrong = 0}, RelocalisationConfig{.min_inliers = 20}));
   EXPECT_FALSE(is_certain({}, RelocalisationConfig{.min_inliers = 60}));

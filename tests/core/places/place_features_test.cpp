@@ -45,7 +45,7 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
       << "10 is not below 0.8 x 12";
   EXPECT_TRUE(match_one(with_bits(100), {with_bits(170)}).empty()) << "70 bits are too many";
   EXPECT_TRUE(match_one(with_bits(100), {}).empty());
-  // Both want the only known one; the nearer gets it.
+  // Both match the same reference feature; the nearer one is accepted.
   const std::vector<PlaceFeature> queries{with_bits(120), with_bits(104)};
   const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)}, kFeatureDefaults);
   ASSERT_EQ(matches.size(), 1U);
@@ -64,7 +64,7 @@ TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
   EXPECT_TRUE(find_corners(GreyImage(62, 62, 9), kFeatureDefaults).empty());
 }
 
-TEST(PlaceFeatures, AreSpreadInsideAndNoMoreThanAsked) {
+TEST(PlaceFeatures, AreSpreadInsideAndAtMostMaxCount) {
   const GreyImage grey = room_image();
   const auto features = find_place_features(grey, PlaceFeaturesConfig{.max_count = 300});
   EXPECT_LE(features.size(), 300U);
@@ -110,7 +110,7 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
   EXPECT_GT(right, 0.9 * static_cast<double>(matches.size()));
 }
 
-TEST(PlaceFeatures, NothingIsSeenInPlainAndTinyImages) {
+TEST(PlaceFeatures, PlainAndTinyImagesHaveNone) {
   EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), kFeatureDefaults).empty());
   EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), kFeatureDefaults).empty());
   EXPECT_TRUE(find_place_features(GreyImage(), kFeatureDefaults).empty());

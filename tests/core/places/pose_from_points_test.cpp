@@ -16,7 +16,7 @@ namespace {
 
 constexpr PinholeCamera kCamera{640, 480, 520, 520, 319.5, 239.5};
 
-/// Points before a camera, where it sees them, and the truth.
+/// Points in front of a camera, their projections, and the true pose.
 struct Scene {
   SE3 T_a_camera{so3_exp({0.5, -0.8, 2.0}), {1.0, -2.0, 0.5}};
   std::vector<SeenPoint> seen;
@@ -56,7 +56,7 @@ TEST(PoseFromPoints, IsExactForExactPointsInDepthAndOnAPlane) {
   }
 }
 
-TEST(PoseFromPoints, TwoThirdsOfWrongPointsAreFoundOut) {
+TEST(PoseFromPoints, RejectsTwoThirdsOfWrongPoints) {
   Scene scene;
   scene.add_wrong(80);
   scene.add(40, 1, 4);
@@ -112,7 +112,7 @@ TEST(PoseFromPoints, PointsWithinThreeStandardDeviationsAreInliers) {
   scene.add(100, 1, 4, 1.0);
   const auto found = pose_from_points(scene.seen, kCamera);
   ASSERT_TRUE(found);
-  // Of a two-dimensional error with one pixel of noise 99 % are nearer than three pixels.
+  // For a two-dimensional error with one pixel of noise, 99 % are within three pixels.
   EXPECT_GT(found->inliers.size(), 90U);
 }
 

@@ -85,8 +85,8 @@ TEST(DeadReckoning, ClaimsItsErrorOnRecordedMotions) {
     Nees nees;
     for (const auto& poses : recordings) add_errors(poses, frames_ahead, nees);
     const double position = nees.position / nees.count, rotation = nees.rotation / nees.count;
-    // Two recordings of few seconds: within a factor of four. Both cameras swing about a place, which the
-    // model does not claim to know after seconds.
+    // Two recordings of a few seconds: within a factor of four. Both cameras move about one place, which the
+    // model does not assume.
     const double least = frames_ahead <= 30 ? 0.25 : 0;
     EXPECT_GT(position, least) << frames_ahead << " frames";
     EXPECT_LT(position, 4) << frames_ahead << " frames";

@@ -51,12 +51,12 @@ TEST(Initialisation, AtRestFindsGravityAndTheGyroscopeBias) {
   EXPECT_LT(sigma(*state, kVelocity), 0.05);
 }
 
-TEST(Initialisation, InMotionTruthLiesWithinTheStatedCovariance) {
+TEST(Initialisation, InMotionTheGroundTruthIsWithinTheCovariance) {
   const testing::HelixMotion motion;
   const auto samples = motion.samples(0, 2, 200);
   const auto state = initialise_with_imu(samples, 1'000'000'000, rig(), InitialisationConfig{});
   ASSERT_TRUE(state.has_value());
-  // Truth in the estimator's world, the first camera frame.
+  // Ground truth in the estimator's world, the first camera frame.
   const SE3 T_room_camera = motion.T_world_imu(1.0) * kTImuCamera;
   const Vector3d velocity = T_room_camera.rotation.conjugate() * motion.velocity_world_mps(1.0);
   const Vector3d gravity = T_room_camera.rotation.conjugate() * motion.gravity_world_mps2.normalized();

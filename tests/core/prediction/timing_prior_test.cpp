@@ -20,7 +20,7 @@ struct TimingOptions {
 
 constexpr SensorTiming kTiming{0.02, 0.03, -0.01, 0.002, 0.003, 0.004};
 
-TEST(TimingPrior, EachIsAsUncertainAsCalibrationAndOptionsSay) {
+TEST(TimingPrior, SigmasAreThoseOfCalibrationAndOptions) {
   TimingOptions config;
   config.initialisation.imu_time_offset_sigma_s = 0.005;
   config.self_calibration.depth_readout = false;
@@ -33,7 +33,7 @@ TEST(TimingPrior, EachIsAsUncertainAsCalibrationAndOptionsSay) {
   EXPECT_EQ(priors[3].sigma_s, 0.004);
 }
 
-TEST(TimingPrior, WithoutCompensationOrAnImuNothingIsLearntOfThem) {
+TEST(TimingPrior, WithoutCompensationOrAnImuTheyAreHeld) {
   TimingOptions config;
   config.terms.motion_compensation = false;
   config.terms.prior = config::Prior::constant_velocity;

@@ -24,7 +24,7 @@ const PinholeCamera kCamera{640, 480, 520, 525, 318.3, 241.1};
 
 double row_time_s(double row) { return kDelay_s + (row / (kCamera.height_px - 1) - 0.5) * kReadout_s; }
 
-/// Where the point behind a pixel was when its row was read.
+/// Projection of the point of a pixel at the read-out time of its row.
 Vector2d to_row(const Vector2d& pixel, double depth_m, const CameraVelocity& velocity) {
   const Vector3d now = kCamera.back_project(pixel.x(), pixel.y(), depth_m);
   Vector2d then = pixel;
@@ -36,7 +36,7 @@ Vector2d to_row(const Vector2d& pixel, double depth_m, const CameraVelocity& vel
   return then;
 }
 
-/// Where a pixel of the image goes, and its depth, at the frame's instant.
+/// Position and depth of a pixel of the image at the instant of the frame.
 Vector3d from_row(const Vector2d& pixel, double depth_m, const CameraVelocity& velocity) {
   const double time_s = row_time_s(pixel.y());
   const Vector3d carried =

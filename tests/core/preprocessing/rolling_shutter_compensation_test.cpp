@@ -79,7 +79,7 @@ void color_in(RgbdFrame& frame) {
   }
 }
 
-/// How far colours are from those of the grey levels, where there is depth, on average.
+/// Mean difference of colours from the grey levels, where there is depth.
 double color_difference(const RgbdFrame& frame) {
   RgbdFrame expected = frame;
   color_in(expected);
@@ -128,7 +128,7 @@ struct Motion {
 
 class RollingShutter : public ::testing::TestWithParam<Motion> {};
 
-TEST_P(RollingShutter, IsUndone) {
+TEST_P(RollingShutter, IsCompensated) {
   const CameraVelocity& velocity = GetParam().velocity;
   RgbdFrame before = rolling_frame(velocity, kTiming);
   color_in(before);
@@ -266,11 +266,11 @@ TEST(MotionCompensation, IsNeededIfAnythingIsReadAtAnotherTime) {
   EXPECT_FALSE(frame_timing(together, {.color_readout_s = 0.02}).is_one_instant());
   EXPECT_FALSE(frame_timing(together, {.depth_readout_s = 0.02}).is_one_instant());
   EXPECT_FALSE(frame_timing(apart, {}).is_one_instant());
-  // Readers have applied the delay to the offset, so by itself it says nothing.
+  // Readers have added the delay to the offset, so by itself it has no effect.
   EXPECT_TRUE(frame_timing(together, {.depth_delay_s = 0.02}).is_one_instant());
 }
 
-/// Largest angle between an estimated orientation and the truth.
+/// Largest angle between an estimated orientation and the ground truth.
 double worst_angle_rad(const testing::SimulatedRun& run, const std::vector<FrameReport>& reports) {
   double worst = 0;
   for (std::size_t k = 0; k < reports.size(); ++k) {

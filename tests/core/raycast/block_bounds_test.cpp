@@ -62,7 +62,7 @@ TEST(BlockBounds, AreCloseToTheSurface) {
   }
 }
 
-/// Of the few blocks that one pixel allocates: their neighbours do not hide a bound that is missing.
+/// Uses the few blocks of one pixel, whose neighbours cannot hide a missing bound.
 TEST(BlockBounds, NoCornerOfABlockLiesBefore) {
   const PinholeCamera camera = test_camera(640, 480, 90.0);
   const DepthConfig depth;
@@ -93,7 +93,7 @@ TEST(BlockBounds, NoCornerOfABlockLiesBefore) {
   EXPECT_GT(corners, 500);
 }
 
-TEST(BlockBounds, KnowNothingOutsideOfTheImageAndNoBlocksWhereThereAreNone) {
+TEST(BlockBounds, AreZeroOutsideOfTheImageAndInfiniteWithoutBlocks) {
   const AnalyticScene wall{{AnalyticPlane{{0, 0, -1}, -2.0, {10, 120, 250}}}};
   const TsdfVolume volume = fuse(wall, kBoundsCamera, {SE3{}});
   const BlockBounds ahead(volume, kBoundsCamera, SE3{}, DepthConfig{});

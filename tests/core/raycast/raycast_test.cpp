@@ -124,7 +124,7 @@ TEST(Raycast, FindsTheFirstCrossingOfTheTrilinearField) {
     const SurfacePoint point =
         testing::raycast_pixel(volume, kCamera, T_world_camera, u_px, v_px, DepthConfig{});
     ASSERT_TRUE(point.valid);
-    // The same by tiny steps from 3 cm in front, without any cleverness.
+    // Reference: tiny steps from 3 cm in front.
     double z_m = point.depth_m - 0.03;
     const auto in_front = [&] {
       const auto distance_m = field.distance_m(T_world_camera * kCamera.back_project(u_px, v_px, z_m));

@@ -43,7 +43,7 @@ struct Room {
     return pixels;
   }
 
-  /// What each way to look for surfaces finds.
+  /// Results of each search method.
   [[nodiscard]] std::vector<SurfacePoint> found_beside(const std::vector<ExpectedSurface>& pixels) const {
     TsdfBrick brick;
     std::vector<SurfacePoint> surfaces(pixels.size());
@@ -66,7 +66,7 @@ struct Room {
   }
 };
 
-/// Share of the surfaces that walking finds and that are found, and how far apart the two are at most.
+/// Share of the surfaces of the ray march that the search finds, and their largest difference.
 struct Agreement {
   double share = 0;
   double depth_m = 0;
@@ -126,7 +126,7 @@ TEST(SurfaceSearch, NearAndFarPartsOfAnEdgeAreBothFound) {
   EXPECT_GT(compare(room.found_beside(pixels), room.walked(pixels)).share, 0.9);
 }
 
-TEST(SurfaceSearch, ASurfaceOutOfReachIsNone) {
+TEST(SurfaceSearch, IgnoresASurfaceOutOfReach) {
   const Room room;
   for (const float error_m : {-0.03F, 0.03F}) {
     for (const float reach_m : {0.02F, 0.05F}) {

@@ -42,7 +42,7 @@ Keyframes one_keyframe(const SE3& T_world_camera = {}) {
   return keyframes;
 }
 
-/// Of what a search found.
+/// Result of a search.
 std::optional<FoundPlace> first_of(const std::vector<FoundPlace>& best_first) {
   if (best_first.empty()) return std::nullopt;
   return best_first.front();
@@ -56,7 +56,7 @@ GreyImage noise_image() {
 }
 
 TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
-  // The world of the poses is not that of the keyframe, so that a mix-up of frames shows.
+  // The world frame differs from that of the keyframe, so that confused frames are detected.
   const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
   const SE3 T_room_key{so3_exp({0.05, -0.1, 0.02}), {0.05, 0, -0.1}};
   const RgbdFrame key = seen_from(T_room_key);
@@ -83,7 +83,7 @@ TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
 }
 
 TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
-  // Turned worlds, so that the axes of the covariance matter.
+  // Rotated worlds, so that the axes of the covariance matter.
   const SE3 T_world_room{so3_exp({0, 0, radians(90)}), {1, 2, 3}};
   const RgbdFrame key = seen_from({});
   Keyframes plain(small_camera(), kDefaults);
@@ -125,7 +125,7 @@ TEST(Keyframes, DepthFindsThePoseInTheDark) {
   EXPECT_EQ(found->inliers, 0);
 }
 
-TEST(Keyframes, DepthFindsAPlaceThatNothingPredicted) {
+TEST(Keyframes, DepthFindsAPlaceWithoutAPrediction) {
   const RgbdFrame key = seen_from(kCorner);
   Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
@@ -152,7 +152,7 @@ TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
       << "neither the prediction nor what it looks like is of this place";
 }
 
-TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
+TEST(Keyframes, ReturnTheMatchedKeyframe) {
   Keyframes keyframes(small_camera(), kDefaults);
   const SE3 front;
   const SE3 left{so3_exp({0, radians(-80), 0}), Vector3d::Zero()};
@@ -196,7 +196,7 @@ TEST(Keyframes, FindThePlaceAmongMoreThanAreMatchedWithAllFeatures) {
   EXPECT_GE(found_alone, 5);
 }
 
-TEST(Keyframes, TellAllPlacesThatLookAlike) {
+TEST(Keyframes, ReturnAllAmbiguousCandidates) {
   // Two doors of a corridor: the same picture, three metres apart.
   const RgbdFrame door = seen_from({});
   const SE3 next_door{Quaterniond::Identity(), {3, 0, 0}};
@@ -216,7 +216,7 @@ TEST(Keyframes, TellAllPlacesThatLookAlike) {
   EXPECT_NE(found[0].keyframe, found[1].keyframe);
 }
 
-TEST(Keyframes, FindNothingWhereNoneHasBeen) {
+TEST(Keyframes, FindNothingInAnUnvisitedPlace) {
   Keyframes keyframes = one_keyframe();
   ASSERT_EQ(keyframes.size(), 1U);
   EXPECT_FALSE(keyframes.find(seen_from({}).grey).empty()) << "else the rest says nothing";
@@ -230,7 +230,7 @@ TEST(Keyframes, FindNothingWhereNoneHasBeen) {
 }
 
 TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
-  // A poster may hang in two rooms: what is seen in one corner of the image tells no pose.
+  // A poster may be in two rooms: matches in one corner of the image determine no pose.
   Keyframes keyframes = one_keyframe();
   const GreyImage whole = seen_from({}).grey;
   GreyImage corner(320, 240, 140);
@@ -265,7 +265,7 @@ TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
   EXPECT_EQ(rolling.size(), 1U);
 }
 
-/// How many of seven frames along a line of 0.96 m are kept.
+/// Number of kept frames of seven along a line of 0.96 m.
 std::size_t kept_along_a_line(const Config& config) {
   Keyframes keyframes(small_camera(), config);
   for (int k = 0; k < 7; ++k) offer(keyframes, {Quaterniond::Identity(), {-0.48 + 0.16 * k, 0, 0}}, k);
@@ -296,7 +296,7 @@ TEST(Keyframes, TheAngleBetweenThemDecidesAsWell) {
   EXPECT_EQ(kept(90), 1U);
 }
 
-TEST(Keyframes, NothingIsFoundByFewerInliersThanAreAskedFor) {
+TEST(Keyframes, RequireTheConfiguredInliers) {
   Config config;
   const RgbdFrame frame = seen_from({});
   const auto found_with = [&](int min_inliers) {
@@ -368,7 +368,7 @@ TEST(Keyframes, ABlurredFrameWithoutFeaturesDoesNotBarASharpOne) {
   EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2, 1.0));
 }
 
-TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
+TEST(Keyframes, RejectFeaturesAtAnEdgeOfDepth) {
   RgbdFrame frame = seen_from({});
   for (int y = 0; y < 240; ++y) {
     for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
@@ -386,7 +386,7 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
   }
 }
 
-TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
+TEST(Keyframes, LandmarksAreComputedAtTheFirstSearch) {
   RgbdFrame frame = seen_from({});
   frame.grey = noise_image();
   ASSERT_GT(find_corners(frame.grey, kDefaults.place_features).size(), 500U);

@@ -28,7 +28,7 @@ TEST(PackedDepth, KeepsDepthToHalfAStepAndHolesAsTheyAre) {
   }
 }
 
-TEST(PackedDepth, TheLeastMeasurementBesideAFarOneStaysOne) {
+TEST(PackedDepth, KeepsTheLeastMeasurementNextToAFarOne) {
   DepthImage depth_m(2, 1);
   depth_m.data = {1e-6F, 5.0F};
   EXPECT_GT(PackedDepth(depth_m).unpacked_m().data[0], 0.0F);

@@ -54,7 +54,7 @@ TEST(PlaceOdds, TheDensityOfAPoseIsThatOfStudentsT) {
   EXPECT_NEAR(pose_density(prediction, at(0)) / mode, 1, 1e-9);
 }
 
-TEST(PlaceOdds, OneCandidateIsAcceptedUnlessDeadReckoningKnowsNothing) {
+TEST(PlaceOdds, OneCandidateIsAcceptedUnlessDeadReckoningIsUninformative) {
   EXPECT_EQ(decide({at(0.5)}, reckoned(0.5)), 0U);
   EXPECT_EQ(decide({at(1)}, reckoned(1, 0.5)), 0U);
   EXPECT_EQ(decide({at(20)}, reckoned(20, 1.5)), std::nullopt) << "a minute of walking";
@@ -66,7 +66,7 @@ TEST(PlaceOdds, AFilterThatWasWrongBeforeItWasLostFindsTheRightPlace) {
   EXPECT_EQ(decide({at(3)}, reckoned(0.1, 0.1)), std::nullopt) << "a picture that repeats";
 }
 
-TEST(PlaceOdds, OfTwoPlacesThatLookAlikeDeadReckoningDecides) {
+TEST(PlaceOdds, DeadReckoningSelectsAmongAmbiguousCandidates) {
   EXPECT_EQ(decide({at(3), at(0.02)}, reckoned(0.1)), 1U);
   EXPECT_EQ(decide({at(3), at(0)}, reckoned(3)), std::nullopt);
   EXPECT_EQ(decide({at(0), at(0, std::numbers::pi)}, reckoned(0.5, 2)), std::nullopt) << "two equal sides";

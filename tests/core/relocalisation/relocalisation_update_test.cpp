@@ -41,12 +41,12 @@ RelocalisedPose place_at(const SE3& T_world_imu, double sigma) {
   return place;
 }
 
-TEST(RelocalisationUpdate, AnExactPlaceIsTakenAndTellsTheVelocity) {
+TEST(RelocalisationUpdate, AnExactPlaceIsAcceptedAndGivesTheVelocity) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
   const SE3 found = pose_plus(kPredicted, off);
   const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6), {});
-  EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 2e-3);  // the reference may be off by that
+  EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 2e-3);  // possible error of the reference
   // The position was wrong because the velocity was, for half a second.
   EXPECT_LT((state.mean.velocity_world_mps - Vector3d(0.5, -0.2, 0.1) - off.tail<3>() / 0.5).norm(), 1e-4);
   EXPECT_EQ(state.mean.gyroscope_bias_radps, Vector3d::Zero());
@@ -100,7 +100,7 @@ TEST(RelocalisationUpdate, AFilterThatWasTooSureOfItselfIsOverruled) {
       relocalisation_update(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01), {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 0.1);
   EXPECT_EQ(state.covariance(kGyroscopeBias, kGyroscopeBias), 1e-6);  // not contradicted by a place
-  // Nothing moves like that: how fast it was tells nothing of how fast it is.
+  // The innovation is implausible, so the earlier velocity gives no information.
   EXPECT_EQ(state.mean.velocity_world_mps, Vector3d::Zero());
   EXPECT_NEAR(state.covariance(kVelocity, kVelocity), 1.0, 1e-12);
 }

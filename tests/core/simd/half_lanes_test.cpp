@@ -28,7 +28,7 @@ TEST(HalfLanes, RoundToTheNearestOfElevenBits) {
   EXPECT_NEAR(read[7], -3.3e-5F, 0x1p-25);
 }
 
-TEST(HalfLanes, KeepWhatIsNotKnown) {
+TEST(HalfLanes, KeepNan) {
   std::array<Half, kLanes> stored;
   store(Float8{} + std::numeric_limits<float>::quiet_NaN(), stored.data());
   const Float8 read = load(stored.data());

@@ -26,7 +26,7 @@ using testing::SwingingMotion;
 constexpr double kFrameRateHz = 30;
 const ImuNoise kNoise{1e-3, 2e-2, 5e-5, 6e-4};
 
-/// The truth of a made-up recording and what would be measured in it.
+/// Ground truth of a synthetic recording and its measurements.
 struct MadeUp {
   SwingingMotion motion;
   SE3 T_imu_camera{so3_exp({0.02, -0.03, 0.01}), {0.09, 0.003, -0.02}};
@@ -35,7 +35,7 @@ struct MadeUp {
   Vector3d accelerometer_bias{0.04, -0.03, 0.05};
   double rotation_sigma_rad = 3e-4;  ///< of the motion between two images
   double translation_sigma_m = 5e-4;
-  double claimed_sigmas = 1;  ///< the covariance that is told, in true sigmas
+  double claimed_sigmas = 1;  ///< claimed standard deviation divided by the true one
   double correlation = 0;     ///< of the errors of one motion and the next
   std::vector<ImuSample> imu;
 };
@@ -90,7 +90,7 @@ BatchOptions calibrating() {
   return options;
 }
 
-/// As far off as calibrations are that somebody has measured with a ruler.
+/// Errors of a calibration with a ruler.
 void disturb(BatchInput& input) {
   input.T_imu_camera.rotation =
       input.T_imu_camera.rotation * so3_exp(radians(1.0) * Vector3d(0.6, -0.64, 0.48));
@@ -218,8 +218,8 @@ TEST(BatchEstimate, FindsTheScalesOfTheImu) {
   EXPECT_EQ(held->common_covariance(kCommonGyroscopeScale, kCommonGyroscopeScale), 0.0);
 }
 
-/// Frames that each tell the timing, with errors that are the same for most of a second: as white noise they
-/// would seem to tell it three times as well.
+/// Frames with timing measurements whose errors are constant for most of a second: as white noise they would
+/// seem three times as accurate.
 TEST(BatchEstimate, ATimingIsAsUncertainAsItScattersOverSeconds) {
   constexpr int kFrames = 240;
   constexpr int kRecordings = 10;
@@ -252,7 +252,7 @@ TEST(BatchEstimate, ATimingIsAsUncertainAsItScattersOverSeconds) {
   EXPECT_GT(normalised, 0.5);
 }
 
-TEST(BatchEstimate, ATimingThatNothingTellsKeepsItsPrior) {
+TEST(BatchEstimate, AnUnobservableTimingKeepsItsPrior) {
   std::mt19937 random(6);
   const MadeUp data = made_up(random, kNoise, 60);
   const BatchInput input = input_of(data, 60, random, 1.0);
@@ -335,7 +335,7 @@ void expect_chi_square(double mean, double freedom, const char* what) {
 
 TEST(BatchEstimate, CovariancesAreHonestWhereTheScaleOfTheImagesIsUnknown) {
   MadeUp kind;
-  kind.claimed_sigmas = 4;  // what the filter says is too careful
+  kind.claimed_sigmas = 4;  // the filter overestimates its uncertainty
   const Consistency mean = consistency(20, 60, kind);
   expect_chi_square(mean.calibration, 7, "calibration");
   expect_chi_square(mean.rotation, 3, "rotation");
@@ -403,8 +403,8 @@ TEST(BatchEstimate, LostFramesAreBridgedAndLessCertain) {
             4 * sigma(bridged->frames[32]));
 }
 
-/// Single samples say little of how the rate changes when the motion is slow: their noise must not pass for
-/// it.
+/// In slow motion single samples give little information on the change of the rate; their noise must not be
+/// used as such.
 TEST(BatchEstimate, NoiseIsNotTakenForChangesOfSpeed) {
   MadeUp kind;
   kind.motion.swing_rad = 0.06;
@@ -423,8 +423,8 @@ TEST(BatchEstimate, NoiseIsNotTakenForChangesOfSpeed) {
   EXPECT_LT(normalised, 3.5);  // chi-square of 6 degrees of freedom: 0.2 % are above
 }
 
-/// Turning about one axis alone does not say where along it the IMU is.
-TEST(BatchEstimate, SaysWhatTheMotionDoesNotDetermine) {
+/// Rotation about one axis does not determine the position of the IMU along it.
+TEST(BatchEstimate, ReportsWhatTheMotionDoesNotDetermine) {
   MadeUp kind;
   kind.motion.axes = {0, 1, 0};
   std::mt19937 random(6);

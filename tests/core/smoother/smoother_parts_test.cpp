@@ -65,7 +65,7 @@ TEST(Manifolds, DirectionsStayUnit) {
   expect_manifold(DirectionManifold{}, down, Vector2d(0.3, -0.2));
 }
 
-/// Chains with an unknown that meets all others, as batch problems have them.
+/// Chains with an unknown connected to all others, as in batch problems.
 TEST(SelectedInverse, AgreesWithTheDenseInverse) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -126,7 +126,7 @@ TEST(SmoothedSample, KeepsAParabolaAndTakesAwayNoise) {
   EXPECT_LT((smoothed.specific_force_mps2 - Vector3d(9.81 - t * t, t, 2.0)).norm(), 1e-12);
   const ImuSample less_noisy = smoothed_sample(noisy, instant_ns, 0.1);
   EXPECT_LT((less_noisy.angular_velocity_radps - smoothed.angular_velocity_radps).norm(), 1.2);
-  // Where the samples end, a parabola would make the noise larger: the nearest one.
+  // At the end of the samples a parabola would amplify the noise: the nearest sample is used.
   EXPECT_EQ(smoothed_sample(noisy, 1'215'000'000, 0.1).angular_velocity_radps,
             noisy.back().angular_velocity_radps);
   // Too few samples: the nearest one.
@@ -165,7 +165,7 @@ TEST(VisualPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   EXPECT_LT(testing::relative_distance(seen.covariance, expected), 1e-6);
 }
 
-TEST(VisualPose, StaysWhereNothingIsKnown) {
+TEST(VisualPose, KeepsUnobservableDirections) {
   PoseEvidence evidence;
   evidence.quadratic.information.diagonal() << 1e6, 1e6, 1e6, 1e6, 1e6, 0;
   evidence.quadratic.gradient << 0, 0, 0, 0, 0, 1e-3;
@@ -255,7 +255,7 @@ TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
   EXPECT_NE(told.by_timing, pose.by_timing);
 }
 
-TEST(VisualTiming, SaysNothingWithoutMotion) {
+TEST(VisualTiming, HasNoInformationWithoutMotion) {
   PoseEvidence evidence;
   evidence.quadratic.information = 1e6 * Matrix6d::Identity();
   const VisualTiming timing = visual_timing(evidence);

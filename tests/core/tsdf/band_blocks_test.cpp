@@ -83,13 +83,13 @@ TEST(BandBlocks, OfEverySecondOrFourthPixelMissCornersAtMost) {
   }
 }
 
-TEST(BandBlocks, OfSomethingThinAreFoundWithinFourFrames) {
+TEST(BandBlocks, OfAThinObjectAreFoundWithinFourFrames) {
   const TsdfConfig tsdf;
   const DepthConfig depth;
   const double block_m = 8 * tsdf.voxel_m;
   for (const bool upright : {true, false}) {
     for (int place = 60; place < 64; ++place) {
-      // A single row or column of pixels, wherever it lies to the grid that is looked at.
+      // A single row or column of pixels at any position relative to the grid of used pixels.
       DepthImage depth_m(kBandCamera.width_px, kBandCamera.height_px);
       for (int i = 8; i < 112; ++i) depth_m(upright ? place : i, upright ? i : place) = 2.0F;
       Blocks found;

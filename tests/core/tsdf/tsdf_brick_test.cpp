@@ -64,7 +64,7 @@ TEST(TsdfBrick, GivesTheBytesOfTheVolumeInside) {
   }
 }
 
-TEST(TsdfBrick, OutsideNothingIsKnown) {
+TEST(TsdfBrick, IsUnobservedOutside) {
   const TsdfVolume volume = fuse(ball_scene(), test_camera(320, 240, 60.0), poses_around_ball());
   TsdfBrick brick;
   brick.copy(volume, {24, 0, 0}, {39, 7, 7});

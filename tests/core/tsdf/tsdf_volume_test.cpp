@@ -135,7 +135,7 @@ TEST(TsdfVolume, WeighsByTheDepthNoise) {
   EXPECT_GT(weight_at(0.5), 5 * weight_at(4.0));
 }
 
-TEST(TsdfVolume, TrustsTheBackHalfOfTheBandLessAndLess) {
+TEST(TsdfVolume, WeightDecreasesOverTheBackHalfOfTheBand) {
   const TsdfVolume volume = fuse(wall(1.0), kCamera, {kOrigin});
   const auto weight = [&](int z) {
     return static_cast<double>(testing::find_voxel(volume, {0, 0, z})->weight);
@@ -237,7 +237,7 @@ TEST(TsdfVolume, FollowsColourInStepsOfLessThanALevel) {
   const Workers workers(1);
   TsdfVolume volume{TsdfConfig{}};
   RgbdFrame frame = wall_frame(1.0);
-  // Of 64 and more, a frame moves the mean by a sixteenth of a level.
+  // With 64 or more observations, a frame moves the mean by a sixteenth of a level.
   const auto fuse_grey = [&](std::uint8_t level, int frames) {
     std::fill(frame.color.data.begin(), frame.color.data.end(), Rgb{level, level, level});
     for (int i = 0; i < frames; ++i)

@@ -20,7 +20,7 @@ std::filesystem::path golden_exr(const char* name) {
   return testing::repository_root() / "tests" / "golden" / "record3d" / name;
 }
 
-/// With another number behind a text that stands in it once.
+/// Replaces the number after a text that occurs once.
 std::string with_number(std::string exr, const std::string& behind, std::size_t skipped,
                         std::uint32_t number) {
   const std::size_t at = exr.find(behind);

@@ -36,7 +36,7 @@ TEST(ImageLibrary, LibraryOfSomebodyElse) {
   EXPECT_EQ(refusal("libm.so.6"), "libm.so.6 is not of this build of fusebench");
 }
 
-TEST(ImageLibrary, ModuleKnowsItsBuild) {
+TEST(ImageLibrary, ModuleRejectsAnotherBuild) {
   ASSERT_TRUE(image_library());
   void* const module = dlopen("fusebench_images.so", RTLD_LAZY);
   ASSERT_NE(module, nullptr) << dlerror();

@@ -187,7 +187,7 @@ TEST_F(PlainPng, ReadsWhatACameraRecorded) {
   EXPECT_EQ(files, 10);
 }
 
-TEST_F(PlainPng, LeavesEverythingElseAlone) {
+TEST_F(PlainPng, RejectsAllOtherFiles) {
   const std::string head = header(kColor);
   const std::string rows = random_rows(3);
   const std::string pixels = chunk("IDAT", compressed(rows));
@@ -220,7 +220,7 @@ TEST_F(PlainPng, LeavesEverythingElseAlone) {
   EXPECT_FALSE(read_plain_png_color(::testing::TempDir()).has_value()) << "a folder";
 }
 
-// The chunks of these files are sound: only the checksum within the compressed pixels can tell.
+// The chunks of these files are valid: only the checksum within the compressed pixels shows the damage.
 TEST_F(PlainPng, NoticesDamagedPixels) {
   std::string rows = random_rows(3);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i % (1 + 3 * kWidth) == 0 ? rows[i] : rows[i] & 3;

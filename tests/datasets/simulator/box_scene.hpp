@@ -1,5 +1,4 @@
-// An empty room as a scene file, for tests that only need something to look at: the furnished one takes a
-// second.
+// An empty room as a scene file, for tests that need any scene: building the furnished one takes a second.
 #pragma once
 
 #include <gtest/gtest.h>

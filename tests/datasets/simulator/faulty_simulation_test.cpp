@@ -1,4 +1,4 @@
-// What each fault does to the files of a recording.
+// Effect of each fault on the files of a recording.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -76,7 +76,7 @@ class FaultySimulation : public testing::InTemporaryFolder {
     return read_depth16(nth(folder / "depth", k)).value();
   }
 
-  /// Whether the images of a frame have the same bytes in two recordings.
+  /// True if the images of a frame have the same bytes in two recordings.
   static bool same_images(const fs::path& a, const fs::path& b, std::size_t k) {
     return testing::read_bytes(nth(a / "rgb", k)) == testing::read_bytes(nth(b / "rgb", k)) &&
            testing::read_bytes(nth(a / "depth", k)) == testing::read_bytes(nth(b / "depth", k));
@@ -291,8 +291,8 @@ TEST_F(FaultySimulation, AZr300SeesTheHandByDepthFromWhereItsDepthCameraIs) {
   const fs::path folder = simulated(faulty);
   const auto recording = open_recording(folder);
   ASSERT_TRUE(recording);
-  // Registered to colour, hand lies on hand: nearly all pixels near in depth have the colour that they have
-  // without the room's light, and nowhere is the hand seen twice.
+  // Registered to colour: nearly all pixels with near depth have the colour of the hand (without the room's
+  // light), and the hand appears once only.
   const RgbdFrame frame = recording->load_frame(1).value();
   std::size_t near = 0;
   for (const float z : frame.depth_m.data) near += z > 0.3F && z < 0.45F ? 1U : 0U;
@@ -384,7 +384,7 @@ TEST_F(FaultySimulation, AnUntoldOffsetMovesTheStampsOfTheImuAlone) {
   }
 }
 
-TEST_F(FaultySimulation, NonsenseIsRefusedAndLeavesNothing) {
+TEST_F(FaultySimulation, RejectsInvalidOptionsWithoutAFolder) {
   const auto message = [&](const auto& change) {
     SimulationOptions faulty = options();
     change(faulty);

@@ -64,7 +64,7 @@ TEST_F(Realism, TheSameBytesForOneAndFourThreads) {
   }
 }
 
-TEST_F(Realism, TheTruthIsOfTheCameraWhateverCameraItIsReadAs) {
+TEST_F(Realism, GroundTruthIsThatOfTheCameraForAnyPreset) {
   const fs::path folder = simulated(options(), "twin");
   recording::ReadOptions with_offset;
   with_offset.camera = calibration::read_calibration(folder / "calibration.toml").value().color;
@@ -75,7 +75,7 @@ TEST_F(Realism, TheTruthIsOfTheCameraWhateverCameraItIsReadAs) {
   for (const std::string& note : twin->notes) EXPECT_EQ(note.find("ground truth"), std::string::npos) << note;
 }
 
-TEST_F(Realism, TheCalibrationDoesNotTellWhatTheSimulationDoes) {
+TEST_F(Realism, TheCalibrationOmitsTheSimulatedErrors) {
   const fs::path folder = simulated(options(), "tum");
   const std::string calibration = testing::read_bytes(folder / "calibration.toml");
   EXPECT_EQ(calibration.find("readout_s"), std::string::npos);

@@ -14,10 +14,10 @@
 
 namespace fusebench::testing {
 
-/// Of TUM's freiburg1, at a tenth of its size.
+/// The camera of TUM's freiburg1 at a tenth of its size.
 inline constexpr PinholeCamera kRouteCamera = {64, 48, 51.7, 51.6, 31.4, 25.0};
 
-/// Where the camera goes. Times are seconds from the first frame of a recording of the usual duration.
+/// Poses of the camera. Times are seconds from the first frame of a recording of the default duration.
 class RoutePath {
  public:
   RoutePath(simulator::motion::MotionPreset preset, std::uint64_t seed, const Eigen::AlignedBox3d& free_space)
@@ -40,7 +40,7 @@ class RoutePath {
     return simulator::motion::peak_speeds(camera_, SE3{}, kFirst_ns + std::llround(1e9 * begin_s),
                                           kFirst_ns + std::llround(1e9 * end_s));
   }
-  /// When the camera has come to the end of its route: but for the hand's sway, it stands still from then on.
+  /// End of the route: from then on the camera is at rest except for the hand's sway.
   [[nodiscard]] double end_s() const {
     constexpr double kStep_s = 0.1;
     double end_s = duration_s_;
@@ -59,7 +59,7 @@ class RoutePath {
   synthetic_imu::PoseSpline camera_;
 };
 
-/// What the camera meets and sees in the preset's scene, which takes seconds to build.
+/// Collisions and views in the preset's scene, which takes seconds to build.
 class RouteView {
  public:
   RouteView(simulator::motion::MotionPreset preset, std::uint64_t seed)

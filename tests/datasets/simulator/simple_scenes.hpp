@@ -66,7 +66,7 @@ inline simulator::scene::SimulatedScene sphere_at(const Eigen::Vector3f& centre,
   return scene;
 }
 
-/// From t = 0 to 1 s at constant velocity, at the origin of the world at 0.5 s, axes as the world's.
+/// Constant velocity from t = 0 to 1 s, at the origin of the world at 0.5 s, with the world's axes.
 inline synthetic_imu::PoseSpline straight_motion(const Vector3d& velocity_mps) {
   synthetic_imu::PoseSpline spline(0, 1'000'000'000, 100'000'000);
   for (std::size_t i = 0; i < spline.position_world_m.size(); ++i) {

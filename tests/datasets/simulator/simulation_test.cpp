@@ -172,7 +172,7 @@ TEST_F(Simulation, ErrorsNameTheOption) {
   EXPECT_NE(message([](auto& o) { o.duration_s = 0; }).find("duration_s"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.rate_hz = 25; }, RecordingLayout::icl).find("rate_hz = 25"),
             std::string::npos);
-  // The zr300 reader tells the unit of stamps by their spacing.
+  // The zr300 reader derives the unit of stamps from their spacing.
   EXPECT_NE(message([](auto& o) { o.rate_hz = 3; }).find("zr300 layout: 4 .. 200"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.rate_hz = 201; }).find("rate_hz = 201"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.rig.color.timing.depth_delay_s = 1; }).find("delay_s = 1"),
@@ -238,7 +238,7 @@ TEST_F(Simulation, FollowsATrajectoryFile) {
   ASSERT_TRUE(truth);
   const SE3 moved = truth->front().T_world_camera.inverse() * truth->back().T_world_camera;
   const double duration_s = seconds_between(truth->front().timestamp_ns, truth->back().timestamp_ns);
-  EXPECT_NEAR(duration_s, 5 / 30.0 + 2 / 90.0, 1e-5);  // the truth has a pose more at both ends
+  EXPECT_NEAR(duration_s, 5 / 30.0 + 2 / 90.0, 1e-5);  // the ground truth has one more pose at both ends
   EXPECT_LT((moved.translation - Vector3d(-0.6 * duration_s, 0, 0)).norm(), 2e-3);  // left of the camera
   EXPECT_NEAR(report->peaks.speed_mps, 0.6, 0.02);
   options.file_motion.in_place = true;

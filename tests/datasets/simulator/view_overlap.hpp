@@ -1,4 +1,4 @@
-// What two views of a scene have in common.
+// Overlap of two views of a scene.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace fusebench::testing {
 
-/// What a camera sees from a pose. Made once for all views that it is compared with.
+/// Surface points in the view from a pose. Computed once for all comparisons.
 struct SeenView {
   SeenView(const simulator::render::Renderer& renderer, const PinholeCamera& seen_by,
            const SE3& T_world_seen_by)

@@ -16,14 +16,14 @@ constexpr std::size_t kCandidates = 20;
 constexpr std::size_t kNeighbours = 4;
 constexpr int kMostSteps = 3;
 constexpr double kSmallStep = 1e-6;
-constexpr SparseIndex kUnknowns = 12;  // of a node: its linear part by columns, then its shift
+constexpr SparseIndex kUnknowns = 12;  // of a node: linear part by columns, then translation
 const double kRootRegularity = std::sqrt(10.0);
 constexpr double kRootConstraint = 10;
-constexpr double kDamping = 1e-9;  // only so that what nothing holds stays
+constexpr double kDamping = 1e-9;  // keeps unconstrained nodes unchanged
 
 }  // namespace
 
-/// Rows of a linear least-squares problem in the changes of the nodes from the first free one on.
+/// Rows of a linear least-squares problem in the changes of the free nodes.
 class DeformationGraph::Equations {
  public:
   explicit Equations(std::size_t first_free) : first_free_(static_cast<SparseIndex>(first_free)) {}
@@ -43,7 +43,7 @@ class DeformationGraph::Equations {
     return sum;
   }
 
-  /// The change that makes residuals smallest; nothing if there is none.
+  /// The least-squares change; nothing if the equations are singular.
   [[nodiscard]] std::optional<Eigen::VectorXd> solve(std::size_t nodes) const {
     const auto unknowns = (static_cast<SparseIndex>(nodes) - first_free_) * kUnknowns;
     SparseMatrixd jacobian(rows_, unknowns);
@@ -73,7 +73,7 @@ std::optional<DeformationGraph> DeformationGraph::make(std::span<const TimedPoin
   return graph;
 }
 
-/// The nearest four in the order of time.
+/// The nearest four nodes in the order of time.
 std::vector<std::size_t> DeformationGraph::neighbours_of(std::size_t node) const {
   const std::size_t first =
       std::min(node > kNeighbours / 2 ? node - kNeighbours / 2 : 0, nodes_.size() - kNeighbours - 1);
@@ -103,7 +103,7 @@ DeformationGraph::Influence DeformationGraph::influence_of(const TimedPoint& poi
     influence.share[i] = left * left;
     total += influence.share[i];
   }
-  // All five are as far: they count alike.
+  // All five have equal distances: equal weights.
   for (double& share : influence.share) share = total > 0 ? share / total : 1.0 / kNeighbours;
   return influence;
 }
@@ -133,7 +133,7 @@ SE3 DeformationGraph::moved(const SE3& T_world_camera, std::int32_t time) const 
   const Influence influence = influence_of({T_world_camera.translation, time});
   const Eigen::JacobiSVD<Matrix3d> svd(linear(influence), Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
-  if (nearest.determinant() < 0) nearest = Matrix3d::Identity();  // space turned inside out: not a camera's
+  if (nearest.determinant() < 0) nearest = Matrix3d::Identity();  // a reflection cannot belong to a camera
   return {(Quaterniond(nearest) * T_world_camera.rotation).normalized(),
           moved(T_world_camera.translation, influence)};
 }
@@ -154,10 +154,10 @@ void DeformationGraph::add_terms(std::span<const PointConstraint> constraints, E
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const auto node = static_cast<SparseIndex>(n);
     const Motion& motion = motions_[n];
-    for (const auto& [a, b] : kProducts) {  // columns of a rotation: orthogonal, of length 1
+    for (const auto& [a, b] : kProducts) {  // orthogonality and unit length of the columns of a rotation
       for (int i = 0; i < 3; ++i) {
         equations.add(node, 3 * a + i, motion.linear(i, b));
-        equations.add(node, 3 * b + i, motion.linear(i, a));  // entries at one place are added
+        equations.add(node, 3 * b + i, motion.linear(i, a));  // repeated entries are added
       }
       equations.end_row(motion.linear.col(a).dot(motion.linear.col(b)) - (a == b ? 1 : 0));
     }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kKeptDissimilarity = 0.3095;
 constexpr double kLeastSimilarity = 0.3;
 constexpr double kMostError_m = 3e-4;
-constexpr double kMostColorDifference = 115;  // of the three channels together
+constexpr double kMostColorDifference = 115;  // sum over the three channels
 
 PinholeCamera small_camera(const PinholeCamera& camera) {
   const double across = static_cast<double>(ferns::kWidth) / camera.width_px;
@@ -24,7 +24,7 @@ PinholeCamera small_camera(const PinholeCamera& camera) {
           down * camera.fy_px, across * camera.cx_px, down * camera.cy_px};
 }
 
-/// Mean difference of colour where the views see the same surface.
+/// Mean difference of colour where both views show the same surface.
 double color_difference(const surfels::SurfelView& query, const surfels::SurfelView& place,
                         const SE3& T_place_camera) {
   double sum = 0, count = 0;

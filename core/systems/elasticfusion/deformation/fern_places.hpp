@@ -1,4 +1,4 @@
-// Places that the camera has been at, by ferns on small images of colour and depth (Glocker et al. 2015).
+// Store of visited places with ferns on small images of colour and depth (Glocker et al. 2015).
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 
 namespace fusebench::systems::elasticfusion::deformation {
 
-/// What the camera saw, at 80x60.
+/// View of the camera at 80x60.
 struct FernPlace {
   ferns::FernCode code{};
   std::int32_t time = 0;
   surfels::SurfelView view;
 };
 
-/// Of the model where a view sees it, of the frame elsewhere.
+/// Uses the model where the view shows it, the frame elsewhere.
 [[nodiscard]] FernPlace fern_place(const surfels::LiveFrame& live, const surfels::SurfelView& view,
                                    std::int32_t time);
 
-/// A place that is found again: the camera's pose by it.
+/// A matched place with the relocalised pose of the camera.
 struct FoundPlace {
   std::size_t place = 0;
   SE3 T_place_camera;
@@ -35,11 +35,11 @@ class FernPlaces {
   FernPlaces(const config::ElasticfusionConfig& config, const Workers& workers)
       : config_(config), workers_(workers) {}
 
-  /// Stores the place if it differs in more than 0.3095 of its ferns from each that is there.
+  /// Stores the place if more than 0.3095 of its ferns differ from those of each stored place.
   bool offer(const FernPlace& place);
 
-  /// The most similar place that is older than so many frames, if more than 0.3 of its ferns are alike and
-  /// the two views fit: distances of planes, so many matches at least, and colours.
+  /// The most similar place that is more than min_age frames old, if more than 0.3 of its ferns agree and
+  /// both views fit by point-to-plane distance, number of matches and colour.
   [[nodiscard]] std::optional<FoundPlace> find(const FernPlace& query, std::int32_t min_age,
                                                double min_matches) const;
 

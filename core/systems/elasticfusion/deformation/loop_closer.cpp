@@ -9,10 +9,10 @@ namespace fusebench::systems::elasticfusion::deformation {
 
 namespace {
 
-constexpr std::size_t kLocalSpacing = 5000;  // surfels from node to node
+constexpr std::size_t kLocalSpacing = 5000;  // surfels for each node
 constexpr std::size_t kGlobalSpacing = 5 * kLocalSpacing;
-constexpr int kColumns = 32, kRows = 24;      // of constraints of a local loop
-constexpr std::size_t kHeldOfALocalLoop = 3;  // points that stay together in later global loops
+constexpr int kColumns = 32, kRows = 24;      // grid of constraints of a local loop
+constexpr std::size_t kHeldOfALocalLoop = 3;  // number of points that later global loops keep together
 constexpr std::int32_t kAgeOfPlaces = 300;    // frames
 constexpr double kFewestMatches = 2400;       // of 80x60
 constexpr double kFewestMatchesLost = 1400;
@@ -21,13 +21,13 @@ constexpr double kLeastErrorBefore_m = 0.06;
 constexpr double kMostErrorAfter_m = 3e-4;
 constexpr double kMostEnergy = 0.12;
 
-/// Pixels by those of 640x480: gates are given for that size.
+/// Ratio of the number of pixels to 640x480, the reference size of the gates.
 double size_of(const PinholeCamera& camera) {
   return static_cast<double>(camera.width_px) * static_cast<double>(camera.height_px) / (640.0 * 480.0);
 }
 
-/// Points that a registration brings together: where they are, at `time`, and where they belong on the
-/// inactive model, at its time.
+/// Points that a registration aligns: their positions at `time` and their targets on the inactive model, at
+/// its time.
 std::vector<PointConstraint> registered_points(const surfels::SurfelView& view,
                                                const surfels::SurfelView& inactive, const SE3& T_world_camera,
                                                std::int32_t time, const surfels::SurfelMap& map) {
@@ -48,8 +48,8 @@ std::vector<PointConstraint> registered_points(const surfels::SurfelView& view,
   return together;
 }
 
-/// Adds constraints that take sources to where their targets are now and, if they are pinned, hold the
-/// targets there.
+/// Adds constraints that move sources to the current positions of their targets. pinned: also fixes the
+/// targets.
 void add_fixed(const std::vector<PointConstraint>& together, bool pinned,
                std::vector<PointConstraint>& constraints) {
   for (const PointConstraint& constraint : together) {
@@ -79,7 +79,7 @@ bool LoopCloser::close(const surfels::LiveFrame& live, const surfels::SurfelView
 
 std::optional<SE3> LoopCloser::relocate(const surfels::LiveFrame& live, const surfels::SurfelView& view,
                                         std::int32_t time) const {
-  surfels::SurfelView nothing = view;  // the model from where the camera was is not what it sees
+  surfels::SurfelView nothing = view;  // no view of the model exists for a lost camera
   for (std::int32_t& surfel : nothing.surfel.data) surfel = surfels::kNoSurfel;
   const auto found = places_.find(fern_place(live, nothing, time), 0, kFewestMatchesLost);
   if (!found) return std::nullopt;
@@ -104,7 +104,7 @@ bool LoopCloser::close_global(const FernPlace& here, surfels::SurfelMap& map, st
         {{here.view.T_world_camera * point, here.time}, {T_world_camera * point, place.time}, true});
   }
   std::vector<PointConstraint> constraints = held_together_;
-  add_fixed(together, true, constraints);  // the place stays
+  add_fixed(together, true, constraints);  // the stored place is fixed
   auto graph = graph_of(map, camera_, kGlobalSpacing);
   if (!graph) return false;
   const auto result = graph->optimise(constraints);
@@ -120,7 +120,7 @@ bool LoopCloser::close_global(const FernPlace& here, surfels::SurfelMap& map, st
 
 bool LoopCloser::close_local(const surfels::SurfelView& view, std::int32_t time, surfels::SurfelMap& map,
                              std::vector<TimedPose>& poses) {
-  if (time <= config_.time_window) return false;  // all is active yet
+  if (time <= config_.time_window) return false;  // all surfels are still active
   const double size = size_of(camera_);
   const double fewest = config_.loop_min_inliers * size;
   const surfels::SurfelView& inactive = inactive_view(view.T_world_camera, time, map);
@@ -133,7 +133,8 @@ bool LoopCloser::close_local(const surfels::SurfelView& view, std::int32_t time,
   const SE3 T_world_camera = view.T_world_camera * motion.T_view_camera;
   const std::vector<PointConstraint> together = registered_points(view, inactive, T_world_camera, time, map);
   if (together.empty()) return false;
-  // What earlier local loops have bent stays. Before the first of them nothing does, unless it is pinned.
+  // Parts deformed by earlier local loops are fixed. Before the first local loop, the targets are pinned
+  // instead.
   std::vector<PointConstraint> constraints;
   add_fixed(together, last_local_loop_ < 0, constraints);
   auto graph = graph_of(map, camera_, kLocalSpacing);
@@ -167,7 +168,7 @@ const surfels::SurfelView& LoopCloser::inactive_view(const SE3& T_world_camera, 
   return inactive_;
 }
 
-/// The inactive surfels in view are active again.
+/// Activates the inactive surfels in view.
 void LoopCloser::reactivate(const SE3& T_world_camera, std::int32_t time, surfels::SurfelMap& map) {
   for (const std::int32_t surfel : inactive_view(T_world_camera, time, map).surfel.data) {
     if (surfel != surfels::kNoSurfel) map.updated[static_cast<std::size_t>(surfel)] = time;

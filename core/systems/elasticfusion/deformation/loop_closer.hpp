@@ -1,5 +1,5 @@
-// Places seen again: the active model against the inactive one in view, and against places known by ferns.
-// What is found bends the map, the poses and the places (Whelan et al. 2015, Secs. 5 and 6).
+// Loop closure of ElasticFusion: registers the active model with the inactive model in view and with places
+// recognised by ferns, and deforms the map, the poses and the places (Whelan et al. 2015, Secs. 5 and 6).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace fusebench::systems::elasticfusion::deformation {
 
-/// The camera at a frame.
+/// Camera pose of a frame.
 struct TimedPose {
   std::int64_t timestamp_ns = 0;
   std::int32_t time = 0;
@@ -26,13 +26,12 @@ class LoopCloser {
   /// workers must outlive it.
   LoopCloser(const config::ElasticfusionConfig& config, const PinholeCamera& camera, const Workers& workers);
 
-  /// After a frame was fused: looks for a loop, and if it is one bends the map and the poses (the last one is
-  /// the frame's own, which becomes what the loop says). `view` is of the stable active surfels from there.
-  /// True if it did.
+  /// Searches a loop after the fusion of a frame. If there is one, deforms the map and the poses (the last
+  /// pose is that of the frame) and returns true. `view`: stable active surfels at the pose of the frame.
   bool close(const surfels::LiveFrame& live, const surfels::SurfelView& view, std::int32_t time,
              surfels::SurfelMap& map, std::vector<TimedPose>& poses);
 
-  /// The pose of a lost camera by the places; nothing if it is at none of them.
+  /// Relocalised pose of a lost camera by the stored places; nothing without a match.
   [[nodiscard]] std::optional<SE3> relocate(const surfels::LiveFrame& live, const surfels::SurfelView& view,
                                             std::int32_t time) const;
 
@@ -56,8 +55,8 @@ class LoopCloser {
   FernPlaces places_;
   surfels::ViewRenderer renderer_;
   surfels::SurfelView inactive_;
-  std::vector<PointConstraint> held_together_;  ///< by the loops so far
-  std::int32_t last_local_loop_ = -1;           ///< its frame: what is older is not bent by later ones
+  std::vector<PointConstraint> held_together_;  ///< constraints of earlier loops
+  std::int32_t last_local_loop_ = -1;           ///< frame of the last local loop; older parts are fixed
   int local_loops_ = 0;
   int global_loops_ = 0;
 };

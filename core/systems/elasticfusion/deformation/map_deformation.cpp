@@ -29,7 +29,7 @@ void deform(const DeformationGraph& graph, const Workers& workers, surfels::Surf
       const TimedPoint point{map.position[i].cast<double>(), map.created[i]};
       const auto influence = graph.influence_of(point);
       map.position[i] = graph.moved(point.position, influence).cast<float>();
-      // Normals stay across what is stretched along the surface.
+      // Inverse transpose, so that normals stay orthogonal to the deformed surface.
       const Vector3d normal = graph.linear(influence).inverse().transpose() * map.normal[i].cast<double>();
       if (normal.allFinite() && normal.norm() > 0) map.normal[i] = normal.normalized().cast<float>();
     }

@@ -1,4 +1,4 @@
-// A deformation graph among the surfels of a map, and the map after it.
+// Builds a deformation graph from the surfels of a map, and deforms the map.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 
 namespace fusebench::systems::elasticfusion::deformation {
 
-/// Nodes at every so manieth surfel by age, of an image of 640x480: as many a frame for other sizes. Nothing
-/// if there are too few surfels.
+/// A node for every spacing-th surfel by age, scaled to images of 640x480. Nothing if there are too few
+/// surfels.
 [[nodiscard]] std::optional<DeformationGraph> graph_of(const surfels::SurfelMap& map,
                                                        const PinholeCamera& camera, std::size_t spacing);
 
-/// Moves all surfels, each by its place and the time it was created.
+/// Deforms all surfels, each by its position and creation time.
 void deform(const DeformationGraph& graph, const Workers& workers, surfels::SurfelMap& map);
 
 }  // namespace fusebench::systems::elasticfusion::deformation

@@ -1,4 +1,4 @@
-// One view of the model against another.
+// Registration of two views of the model.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -8,8 +8,8 @@
 
 namespace fusebench::systems::elasticfusion::deformation {
 
-/// T_model_live: from where the second view's camera would see what the first one sees. Both start at one
-/// place.
+/// T_model_live: pose of the live view in the frame of the model view. Both views are rendered from the same
+/// pose.
 [[nodiscard]] tracking::TrackedMotion register_view(const surfels::SurfelView& live,
                                                     const surfels::SurfelView& model,
                                                     const config::ElasticfusionConfig& config,

@@ -1,4 +1,4 @@
-// Which surfel lies where in an image, at four times its size: what measurements are compared with.
+// Index image of surfels at four times the image size, for the association of measurements.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,21 @@ class IndexMap {
  public:
   static constexpr int kScale = 4;
 
-  /// Puts the middle of each surfel of the choice into its cell, the nearest one of several.
+  /// Writes the centre of each selected surfel into its cell; the nearest one wins.
   void build(const SurfelMap& map, const PinholeCamera& camera, const SE3& T_world_camera,
              const SurfelChoice& choice, const Workers& workers);
 
-  /// What lies in the image, in the camera's frame.
+  /// The surfels inside the image, in the camera frame.
   [[nodiscard]] std::span<const CameraSurfel> surfels() const { return visible_.all(); }
 
-  /// Calls look(number) for the number in surfels() of each surfel within a pixel's width of the middle of
-  /// the pixel, row by row.
+  /// Calls look(number) for each surfel within a pixel's width of the centre of the pixel, row by row;
+  /// number: index in surfels().
   template <class Look>
   void around_pixel(int x_px, int y_px, const Look& look) const {
     around(kScale * x_px + kScale / 2, kScale * y_px + kScale / 2, look);
   }
 
-  /// The same around the place where a surfel is seen (pixels).
+  /// Variant around an image position (pixels).
   template <class Look>
   void around_place(const Vector2d& at_px, const Look& look) const {
     around(cell_of(at_px.x()), cell_of(at_px.y()), look);
@@ -39,7 +39,7 @@ class IndexMap {
  private:
   [[nodiscard]] static int cell_of(double at_px) { return static_cast<int>((at_px + 0.5) * kScale); }
 
-  /// The eight cells either way of a corner of cells.
+  /// Visits eight cells in each direction around a corner of cells.
   template <class Look>
   void around(int column, int row, const Look& look) const {
     const int left = std::max(0, column - kScale), right = std::min(cells_.width, column + kScale);
@@ -50,8 +50,8 @@ class IndexMap {
     }
   }
 
-  /// Bit i is set where cell left + i holds a surfel. A look around goes by these bits, since a branch on
-  /// each cell cannot be predicted and cost a fifth of the time of fusion.
+  /// Bit i is set if cell left + i has a surfel. A branch for each cell cannot be predicted and took a fifth
+  /// of the fusion time.
   [[nodiscard]] unsigned taken_cells(int left, int right, int row) const {
     const std::size_t first = taken_byte(left, row);
     const unsigned bytes = taken_[first] | static_cast<unsigned>(taken_[first + 1]) << 8U;
@@ -63,9 +63,10 @@ class IndexMap {
   }
 
   VisibleSurfels visible_;
-  Image<std::int32_t> cells_;  ///< what is in a cell that is not taken is of an earlier map
+  Image<std::int32_t> cells_;  ///< cells that are not taken hold entries of earlier maps
   std::size_t bytes_of_row_ = 0;
-  std::vector<std::uint8_t> taken_;  ///< a bit for each cell; a row begins at a byte, and a byte ends it all
+  /// one bit for each cell, each row padded to bytes, with a byte of padding at the end
+  std::vector<std::uint8_t> taken_;
 };
 
 }  // namespace fusebench::systems::elasticfusion::surfels

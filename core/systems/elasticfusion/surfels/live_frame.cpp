@@ -34,7 +34,7 @@ PointMap normals_of(const DepthImage& depth_m, const PinholeCamera& camera, cons
             point_at(depth_m, camera, x + 1, y) - point_at(depth_m, camera, x - 1, y);
         const Eigen::Vector3f down =
             point_at(depth_m, camera, x, y + 1) - point_at(depth_m, camera, x, y - 1);
-        // y points down, so down x across looks back at the camera.
+        // y points down, so down x across points towards the camera.
         direction = down.cross(across).normalized();
       }
       normal.put(normal.x.index(x, y), direction);

@@ -1,4 +1,4 @@
-// A frame as the model and the tracker need it.
+// A frame prepared for model and tracker.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -9,15 +9,15 @@
 namespace fusebench::systems::elasticfusion::surfels {
 
 struct LiveFrame {
-  DepthImage raw_m;     ///< within the limits of depth; where surfels are
-  DepthImage smooth_m;  ///< the same without noise: what is tracked, and what normals are of
-  PointMap normal;      ///< in the camera's frame, unit, towards it; 0 where there is none
+  DepthImage raw_m;     ///< within the depth limits; positions of surfels
+  DepthImage smooth_m;  ///< smoothed raw_m; used for tracking and normals
+  PointMap normal;      ///< camera frame, unit, towards the camera; 0 if there is none
   ColorImage color;
-  GreyImage grey;  ///< by the weights of the options
+  GreyImage grey;  ///< weighted as the options require
 };
 
-/// Normals of a depth image by differences over a pixel either way; 0 where one of the four or the pixel
-/// itself was not measured.
+/// Normals of a depth image by differences over one pixel to either side; 0 if one of the five pixels has no
+/// measurement.
 [[nodiscard]] PointMap normals_of(const DepthImage& depth_m, const PinholeCamera& camera,
                                   const Workers& workers);
 
@@ -25,7 +25,7 @@ struct LiveFrame {
                                         const config::DepthConfig& depth, config::PeerDefects defects,
                                         const Workers& workers);
 
-/// Intensity of colour. As published, red and blue have each other's weight.
+/// Intensity of colour. The published program exchanges the weights of red and blue.
 [[nodiscard]] GreyImage intensity_of(const ColorImage& color, config::PeerDefects defects);
 
 }  // namespace fusebench::systems::elasticfusion::surfels

@@ -18,7 +18,7 @@ SeenSurface::SeenSurface(const PinholeCamera& camera)
       nearest_m_(camera.width_px, camera.height_px),
       measurements_(camera.width_px, camera.height_px) {}
 
-/// The nearest pixel; false if it is not in the image.
+/// The nearest pixel; false if it is outside the image.
 bool SeenSurface::place(const Eigen::Vector3f& point_camera, int& x, int& y) const {
   const Vector2d at = camera_.project(point_camera.cast<double>());
   if (!(at.x() > -0.5) || !(at.y() > -0.5)) return false;

@@ -1,4 +1,5 @@
-// Where a frame has measured surfaces that the model knows well: what lies in front of them is not there.
+// Stable surfaces of the model that were measured in the current frame. Surfels in front of them are
+// contradicted.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -10,11 +11,11 @@ class SeenSurface {
  public:
   explicit SeenSurface(const PinholeCamera& camera);
 
-  /// A stable surfel that was measured now; camera frame, in front of it.
+  /// Adds a stable surfel that was measured in this frame; camera frame, z > 0.
   void add(const Eigen::Vector3f& point_camera);
 
-  /// True if the surface lies behind a surfel that was not measured now: at least two measured ones within a
-  /// pixel are more than 1 cm behind it, and none is nearer than that. Surfels at a grazing angle are left.
+  /// True if the measured surface is behind an unmeasured surfel: at least two measured surfels within a
+  /// pixel are more than 1 cm behind it, and none is nearer. False for surfels at a grazing angle.
   [[nodiscard]] bool is_behind(const Eigen::Vector3f& point_camera,
                                const Eigen::Vector3f& normal_camera) const;
 
@@ -22,8 +23,8 @@ class SeenSurface {
   [[nodiscard]] bool place(const Eigen::Vector3f& point_camera, int& x, int& y) const;
 
   PinholeCamera camera_;
-  Image<float> nearest_m_;            ///< of the surfels of each pixel; 0 where there is none
-  Image<std::uint8_t> measurements_;  ///< their number
+  Image<float> nearest_m_;            ///< smallest depth of the surfels of each pixel; 0 if there is none
+  Image<std::uint8_t> measurements_;  ///< number of surfels of each pixel
 };
 
 }  // namespace fusebench::systems::elasticfusion::surfels

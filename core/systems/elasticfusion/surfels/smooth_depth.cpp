@@ -21,14 +21,14 @@ constexpr double kSigma_px = 4.5;
 constexpr float kSigma_m = 0.03F;
 constexpr int kLanes = static_cast<int>(simd::kLanes);
 
-/// exp(-e) as (1 - e/32)^32: 3 % off at one standard deviation and a half, 0 beyond eight.
+/// exp(-e) as (1 - e/32)^32: an error of 3 % at 1.5 standard deviations, 0 beyond eight.
 Float8 falling(Float8 e) {
   Float8 value = simd::max(simd::all_lanes(0.0F), 1.0F - e * (1.0F / 32));
   for (int i = 0; i < 5; ++i) value *= value;
   return value;
 }
 
-/// With a border of zeros, so that every window of eight pixels lies inside.
+/// Adds a border of zeros, so that each window of eight pixels is inside.
 Image<float> with_border(const DepthImage& depth_m) {
   Image<float> padded(depth_m.width + 2 * kReach_px + kLanes, depth_m.height + 2 * kReach_px);
   for (int y = 0; y < depth_m.height; ++y)

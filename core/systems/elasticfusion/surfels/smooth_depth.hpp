@@ -1,4 +1,4 @@
-// Depth without noise that edges survive, for tracking and normals.
+// Edge-preserving smoothing of depth, for tracking and normals.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -6,8 +6,8 @@
 
 namespace fusebench::systems::elasticfusion::surfels {
 
-/// Bilateral mean of the measured pixels within 6 px of each measured one (Gaussians of 4.5 px and 30 mm);
-/// 0 where nothing was measured.
+/// Bilateral mean of the measured pixels within 6 px of each measured pixel (Gaussians of 4.5 px and 30 mm);
+/// 0 without a measurement.
 [[nodiscard]] DepthImage smooth_depth(const DepthImage& depth_m, const Workers& workers);
 
 }  // namespace fusebench::systems::elasticfusion::surfels

@@ -14,7 +14,7 @@ constexpr float kAlongRay_m = 0.05F;
 const float kLeastNormalCosine = std::cos(0.5F);
 constexpr std::int32_t kFramesToBecomeStable = 20;
 constexpr float kCopyDepth_m = 0.01F;
-constexpr float kCopyReach = 1.4F;  // by the radius
+constexpr float kCopyReach = 1.4F;  // as a factor of the radius
 constexpr int kFewestOriginals = 3;
 constexpr std::size_t kFusedRowsAtOnce = 8;
 constexpr std::size_t kSurfelsAtOnce = 16384;
@@ -55,7 +55,7 @@ void SurfelFusion::fuse(const LiveFrame& live, const FusedPose& pose, SurfelMap&
   remove(pose, map);
 }
 
-/// Of the pixels of this phase, row by row.
+/// Matches of the pixels of this phase, row by row.
 std::vector<SurfelFusion::Match> SurfelFusion::find_matches(const LiveFrame& live, int phase) const {
   const int columns = (camera_.width_px - phase + 1) / 2, rows = (camera_.height_px - phase + 1) / 2;
   std::vector<Match> matches(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -93,7 +93,7 @@ void SurfelFusion::update(const LiveFrame& live, const FusedPose& pose, int phas
   const std::vector<Match> matches = find_matches(live, phase);
   const auto surfels = index_.surfels();
   constexpr std::size_t kNoMatch = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> nearest(surfels.size(), kNoMatch);  // match of each surfel
+  std::vector<std::size_t> nearest(surfels.size(), kNoMatch);  // index of the match for each surfel
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (matches[i].number < 0) continue;
     std::size_t& best = nearest[static_cast<std::size_t>(matches[i].number)];
@@ -117,7 +117,7 @@ void SurfelFusion::update(const LiveFrame& live, const FusedPose& pose, int phas
   }
 }
 
-/// Older and stable surfels lie close behind it.
+/// True if older, stable surfels are close behind it.
 bool SurfelFusion::is_a_copy(std::size_t number, const SurfelMap& map) const {
   const auto surfels = index_.surfels();
   const CameraSurfel& surfel = surfels[number];
@@ -125,9 +125,8 @@ bool SurfelFusion::is_a_copy(std::size_t number, const SurfelMap& map) const {
   index_.around_place(camera_.project(surfel.position.cast<double>()), [&](std::size_t other) {
     const CameraSurfel& known = surfels[other];
     const Eigen::Vector3f apart = known.position - surfel.position;
-    const bool is_close =
-        (apart.z() > 0) & (apart.z() < kCopyDepth_m) &
-        (apart.head<2>().norm() < kCopyReach * surfel.radius_m);  // one branch for the three
+    const bool is_close = (apart.z() > 0) & (apart.z() < kCopyDepth_m) &
+                          (apart.head<2>().norm() < kCopyReach * surfel.radius_m);  // combined to one branch
     if (is_close && map.created[known.index] < map.created[surfel.index] &&
         map.confidence[known.index] > stable_confidence_)
       ++originals;

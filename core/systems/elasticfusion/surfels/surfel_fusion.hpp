@@ -1,5 +1,4 @@
-// A frame becomes part of the model: measurements join the surfels that they are of or become new ones, and
-// what new measurements contradict goes.
+// Fuses a frame into the surfel map: updates matched surfels, adds new ones, and removes contradicted ones.
 #pragma once
 
 #include <vector>
@@ -11,7 +10,7 @@
 
 namespace fusebench::systems::elasticfusion::surfels {
 
-/// A frame's place in space and time.
+/// Pose and time of a frame.
 struct FusedPose {
   SE3 T_world_camera;
   std::int32_t now = 0;  ///< number of the frame
@@ -20,7 +19,7 @@ struct FusedPose {
 
 class SurfelFusion {
  public:
-  /// workers must outlive it.
+  /// workers must outlive the object.
   SurfelFusion(const PinholeCamera& camera, float stable_confidence, std::int32_t time_window,
                const Workers& workers)
       : camera_(camera), stable_confidence_(stable_confidence), window_(time_window), workers_(workers) {}
@@ -28,11 +27,11 @@ class SurfelFusion {
   /// Adds a surfel for each pixel with a normal.
   void start(const LiveFrame& live, const FusedPose& pose, SurfelMap& map);
 
-  /// One pixel in four, of even rows and columns or of odd ones in turn: a measurement belongs to the active
-  /// surfel that is nearest to its ray, of those within 5 cm along the ray and 0.5 rad of its normal. Of
-  /// several measurements of one surfel the nearest counts. Measurements without one are new surfels.
-  /// Then removes what does not last: surfels that did not become stable within 20 frames, copies of older
-  /// ones (at least three within 1 cm behind it), and those in front of what was measured now.
+  /// Processes one pixel in four: even rows and columns, or odd ones, in turn. A measurement matches the
+  /// active surfel nearest to its ray, within 5 cm along the ray and 0.5 rad of its normal. Of several
+  /// measurements of a surfel, the nearest is used. Unmatched measurements become new surfels. Then removes
+  /// surfels that were not stable after 20 frames, copies of older surfels (at least three within 1 cm behind
+  /// it), and surfels in front of measured surfaces.
   void fuse(const LiveFrame& live, const FusedPose& pose, SurfelMap& map);
 
  private:
@@ -51,7 +50,7 @@ class SurfelFusion {
   std::int32_t window_;
   const Workers& workers_;
   IndexMap index_;
-  std::vector<std::uint8_t> updated_now_;  ///< by number in the index map
+  std::vector<std::uint8_t> updated_now_;  ///< indexed as the surfels of the index map
 };
 
 }  // namespace fusebench::systems::elasticfusion::surfels

@@ -1,4 +1,4 @@
-// The model: oriented discs in the world, with what is known of each.
+// The surfel map: oriented discs in the world with their attributes.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace fusebench::systems::elasticfusion::surfels {
 
-/// One disc; positions and normals in the world, times as numbers of frames.
+/// One surfel; position and normal in the world, times as frame numbers.
 struct Surfel {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards the cameras that saw it
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards the cameras that observed it
   Rgb color{};
   float radius_m = 0;
   float confidence = 0;
@@ -20,7 +20,7 @@ struct Surfel {
   std::int32_t updated = 0;
 };
 
-/// All discs, attribute by attribute, in the order in which they were created.
+/// All surfels as one array for each attribute, in the order of creation.
 struct SurfelMap {
   std::vector<Eigen::Vector3f> position;
   std::vector<Eigen::Vector3f> normal;
@@ -34,16 +34,16 @@ struct SurfelMap {
   [[nodiscard]] Surfel at(std::size_t index) const;
   void add(const Surfel& surfel);
   void set(std::size_t index, const Surfel& surfel);
-  /// Removes those whose flag is not 0; the others stay in their order. One flag a surfel.
+  /// Removes the surfels whose flag is not 0 and keeps the order. One flag for each surfel.
   void remove(std::span<const std::uint8_t> flags);
 };
 
-/// Some of the surfels, by time and confidence.
+/// Selection of surfels by time and confidence.
 struct SurfelChoice {
   std::int32_t now = 0;      ///< number of the frame
-  std::int32_t window = 0;   ///< active: updated within so many frames
-  bool active = true;        ///< those that are, or those that are not
-  float min_confidence = 0;  ///< more than that
+  std::int32_t window = 0;   ///< active: updated within this number of frames
+  bool active = true;        ///< selects active or inactive surfels
+  float min_confidence = 0;  ///< exclusive limit
 
   [[nodiscard]] bool takes(const SurfelMap& map, std::size_t index) const {
     return (now - map.updated[index] <= window) == active && map.confidence[index] > min_confidence;

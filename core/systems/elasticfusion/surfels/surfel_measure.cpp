@@ -11,7 +11,7 @@ namespace {
 constexpr float kRadialVariance = 0.72F;  // 2 * 0.6^2
 constexpr double kFullMotion = 0.01;      // metres or radians a frame
 constexpr double kLeastMotionWeight = 0.5;
-constexpr float kMostGrowth = 1.5F;  // larger measurements are of less detail
+constexpr float kMostGrowth = 1.5F;  // larger measurements have less detail
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace fusebench::systems::elasticfusion::surfels {
 
 namespace {
 
-/// Slopes of the rays through the columns and rows of an image.
+/// Slopes of the rays of the columns and rows of an image.
 struct Rays {
   explicit Rays(const PinholeCamera& camera) {
     for (int x = 0; x < camera.width_px; ++x)
@@ -26,11 +26,11 @@ class DiscDrawing {
   DiscDrawing(const Rays& rays, Image<float>& nearest_m, Image<std::int32_t>& drawn)
       : rays_(rays), nearest_m_(nearest_m), drawn_(drawn) {}
 
-  /// Draws the part of a disc that lies in these rows.
+  /// Draws the part of a disc within these rows.
   void draw(const CameraSurfel& surfel, std::int32_t number, int first_row, int last_row) const {
     const Eigen::Vector3f &p = surfel.position, &n = surfel.normal;
     const float height = n.dot(p);
-    if (!(height < 0)) return;  // it looks away
+    if (!(height < 0)) return;  // faces away from the camera
     const float z = p.z(), r = surfel.radius_m;
     const int top = std::max<int>(first_row, surfel.top), bottom = std::min<int>(last_row, surfel.bottom);
     for (int y = top; y <= bottom; ++y) {

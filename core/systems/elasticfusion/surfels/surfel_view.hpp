@@ -1,4 +1,4 @@
-// What a camera sees of some surfels: discs, the nearest one behind each pixel.
+// Rendered view of surfels: the nearest disc at each pixel.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -14,11 +14,11 @@ inline constexpr std::int32_t kNoSurfel = -1;
 struct SurfelView {
   PinholeCamera camera;
   SE3 T_world_camera;
-  PointMap point;   ///< where the ray meets the disc, camera frame; z is 0 where there is none
+  PointMap point;   ///< intersection of ray and disc, camera frame; z = 0 if there is none
   PointMap normal;  ///< of the disc, camera frame
   ColorImage color;
-  Image<std::int32_t> surfel;  ///< its index in the map; kNoSurfel also where live data fills in
-  std::size_t seen = 0;        ///< pixels with a surfel
+  Image<std::int32_t> surfel;  ///< index in the map; kNoSurfel also for pixels filled with live data
+  std::size_t seen = 0;        ///< Renders views and reuses its buffers.
 
   [[nodiscard]] double share() const {
     return static_cast<double>(seen) / static_cast<double>(surfel.data.size());
@@ -28,17 +28,17 @@ struct SurfelView {
 /// Renders views, and keeps the memory for it.
 class ViewRenderer {
  public:
-  /// Discs that look away from the camera are not seen. The same for any number of threads.
+  /// Skips discs that face away from the camera. The result does not depend on the number of threads.
   void render(const SurfelMap& map, const PinholeCamera& camera, const SE3& T_world_camera,
               const SurfelChoice& choice, const Workers& workers, SurfelView& view);
 
  private:
   VisibleSurfels visible_;
   Image<float> nearest_m_;
-  Image<std::int32_t> drawn_;  ///< index among the visible ones
+  Image<std::int32_t> drawn_;  ///< index in the visible surfels
 };
 
-/// Puts what the camera measured from the same place behind the pixels that see no surfel.
+/// Fills pixels without a surfel with the measurements from the same pose.
 void fill_in(const LiveFrame& live, SurfelView& view);
 
 }  // namespace fusebench::systems::elasticfusion::surfels

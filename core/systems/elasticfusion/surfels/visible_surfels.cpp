@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kSurfelsAtOnce = 16384;
 constexpr float kNearest_m = 0.05F;
 
-/// Where an interval at some depths is seen, as slopes.
+/// Slopes that an interval covers over a range of depths.
 struct Slopes {
   float low;
   float high;
@@ -22,12 +22,13 @@ struct Slopes {
   }
 };
 
-/// How far a disc reaches along an axis that has this part of its normal.
+/// Extent of a disc along an axis, given the component of its normal along that axis.
 float reach_along(const CameraSurfel& surfel, float normal_part) {
   return surfel.radius_m * std::sqrt(std::max(0.0F, 1 - normal_part * normal_part));
 }
 
-/// Puts in which pixels it may cover, and the one that its middle is nearest to; false if none of the image.
+/// Sets the range of pixels that the surfel may cover and the pixel nearest to its centre; false if it is
+/// outside the image.
 bool put_bounds(const PinholeCamera& camera, CameraSurfel& surfel) {
   const Eigen::Vector3f &p = surfel.position, &n = surfel.normal;
   const float depth = reach_along(surfel, n.z());

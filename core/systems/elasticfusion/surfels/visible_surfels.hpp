@@ -1,5 +1,5 @@
-// Surfels in the frame of a camera, sorted by the rows of its image that they may cover, so that threads can
-// draw band by band and each pixel sees them in one order.
+// Surfels in the frame of a camera, sorted by the image rows that they may cover. Threads draw separate
+// bands, and each pixel processes its surfels in a fixed order.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct CameraSurfel {
   Eigen::Vector3f normal;
   float radius_m;
   std::uint32_t index;  ///< in the map
-  // The pixels of the image that it may cover, the last ones included.
+  // Range of pixels that it may cover, inclusive.
   std::int16_t left, right, top, bottom;
 };
 
@@ -25,7 +25,7 @@ class VisibleSurfels {
  public:
   static constexpr int kBandRows = 16;  ///< the last band may have fewer
 
-  /// Those of the choice whose disc may reach the image, in the order of the map.
+  /// Finds the selected surfels whose disc may reach the image, in the order of the map.
   void find(const SurfelMap& map, const PinholeCamera& camera, const SE3& T_world_camera,
             const SurfelChoice& choice, const Workers& workers);
 

@@ -31,7 +31,7 @@ TrackedMotion CameraTracker::track(const LivePyramid& live, const ViewPyramid& v
   TrackedMotion motion;
   motion.T_view_camera = T_view_start;
   const double weight = config_.icp_weight;
-  // The program weighs the pull of planes once and their stiffness twice.
+  // The published program weights the gradient of the planes once and their information twice.
   const double pull = config_.defects == config::PeerDefects::as_published ? weight : weight * weight;
   for (int number = kLevels - 1; number >= 0; --number) {
     const auto level = static_cast<std::size_t>(number);

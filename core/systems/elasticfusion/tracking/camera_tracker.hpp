@@ -1,5 +1,5 @@
-// Where the camera is: a frame's depth and intensities against a view of the model, coarse to fine (Whelan et
-// al. 2015, Sec. 3.1 and 3.2; constants are the program's).
+// Camera tracking: registers depth and intensities of a frame with a view of the model, coarse to fine
+// (Whelan et al. 2015, Secs. 3.1 and 3.2; constants of the published program).
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace fusebench::systems::elasticfusion::tracking {
 
-/// What images say of a small motion d of points in the frame of the view's camera (rotation in rad, then
-/// translation in m): information * d = descent. The weights of depth and intensities are not those of their
-/// noise, so that `information` is in no unit; `scatter` is the covariance that the descent has by the mean
-/// squares of the residuals, if those of all pixels are independent.
+/// Normal equations of the images for a small motion d of points in the view's camera frame (rotation in rad,
+/// then translation in m): information * d = descent. The weights of depth and intensities are not those of
+/// their noise, so `information` has no unit. `scatter`: covariance of the descent from the mean squared
+/// residuals, for independent pixels.
 struct ImageEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d descent = Vector6d::Zero();
@@ -24,22 +24,22 @@ struct ImageEquations {
 struct TrackedMotion {
   SE3 T_view_camera;
   double matches = 0;        ///< of points with planes, on the finest level
-  double error_m = 0;        ///< root of their summed squared distances, by their number
+  double error_m = 0;        ///< sqrt(sum of squared distances) / number
   ImageEquations images;     ///< of the last step
-  bool was_dropped = false;  ///< a step of more than 0.3 m: the pose is that of the view
+  bool was_dropped = false;  ///< a step exceeded 0.3 m: the result is the pose of the view
 
-  /// The largest diagonal entry of the inverse of the normal equations; infinite if there is none.
+  /// Largest diagonal entry of the inverse normal equations; infinite if they are singular.
   [[nodiscard]] double variance() const;
 };
 
-/// A term beside those of images.
+/// A term in addition to those of the images.
 class PoseTerm {
  public:
   PoseTerm() = default;
   PoseTerm(const PoseTerm&) = delete;
   PoseTerm& operator=(const PoseTerm&) = delete;
   virtual ~PoseTerm() = default;
-  /// The step from a pose, by this term and the images.
+  /// Step from a pose by this term and the images.
   [[nodiscard]] virtual Vector6d step(const SE3& T_view_camera, const ImageEquations& images) const = 0;
 };
 
@@ -49,7 +49,7 @@ class CameraTracker {
   CameraTracker(const config::ElasticfusionConfig& config, const Workers& workers)
       : config_(config), workers_(workers) {}
 
-  /// 4, 5 and 10 steps on the levels, the finest one last; all are taken.
+  /// Runs 4, 5 and 10 steps on the levels, finest level last, without an early end.
   [[nodiscard]] TrackedMotion track(const LivePyramid& live, const ViewPyramid& view, const SE3& T_view_start,
                                     const PoseTerm* term = nullptr) const;
 

@@ -16,12 +16,12 @@ constexpr std::size_t kPixelsAtOnce = 4096;
 constexpr float kMostDepth_m = 6;
 constexpr float kMostDepthApart_m = 0.07F;
 
-/// Eight pixels and what the model has there.
+/// Eight pixels with their matches in the model.
 struct Match {
   Int8 valid;
-  Float8 column, row;  ///< where the view sees it
+  Float8 column, row;  ///< projection into the view
   Float8 depth_m;      ///< of the model
-  Float8 residual;     ///< frame less model
+  Float8 residual;     ///< frame minus model
 };
 
 class IntensityMatcher {
@@ -68,7 +68,7 @@ class IntensityMatcher {
     return match;
   }
 
-  /// Residuals that were matched: their squares, and how many.
+  /// Adds the squared residuals of matched pixels and their number.
   void count(std::size_t first, Float8& squares, Float8& number) const {
     const Match found = match(first);
     const Float8 none{};
@@ -98,8 +98,8 @@ class IntensityMatcher {
     return (model_m > 0.0F) & (simd::abs(model_m - seen_m) <= kMostDepthApart_m);
   }
 
-  /// The model's intensity by bilinear interpolation; not valid where one of the four pixels shows another
-  /// surface or none.
+  /// The model's intensity by bilinear interpolation; invalid if one of the four pixels shows another surface
+  /// or none.
   [[nodiscard]] Float8 between_pixels(Float8 u, Float8 v, Float8 seen_m, Int8& valid) const {
     const PinholeCamera& camera = view_.camera;
     const Int8 left = simd::to_int(simd::clamp(u, 0.0F, static_cast<float>(camera.width_px - 2)));

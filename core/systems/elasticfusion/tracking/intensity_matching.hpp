@@ -1,4 +1,4 @@
-// Intensities of a frame against those that a camera sees of the model.
+// Registration of the intensities of a frame with those of a view of the model.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace fusebench::systems::elasticfusion::tracking {
 
-/// The pixels of a level that tell something: their gradient is large enough, and they have depth. One number
-/// of each a pixel, in rows of eight; those beyond the last pixel have no depth.
+/// The pixels of a level with sufficient gradient and depth, as arrays in rows of eight; padding has no
+/// depth.
 struct TellingPixels {
   PinholeCamera camera;
   std::vector<float> x;  ///< of the point, camera frame
@@ -22,14 +22,14 @@ struct TellingPixels {
   std::vector<float> intensity;
 };
 
-/// Those whose gradient is at least so long (grey levels per pixel), nearer than 6 m.
+/// Selects the pixels with at least this gradient (grey levels per pixel) and a depth below 6 m.
 [[nodiscard]] TellingPixels telling_pixels(const LiveLevel& live, double min_gradient);
 
-/// Sums over the pixels that have a match: each is moved into the view's camera, and the model's point there,
-/// if its depth is within 7 cm, is seen from the frame. The model's intensity is interpolated between four
-/// pixels, as the article's continuous image of the model has it; as published it is that of the nearest
-/// pixel. Residuals weigh 1 / (s + |r|), where s is the root of their mean square, or as published of their
-/// number, in the cost as well. Steps as of match_planes().
+/// Sums over the pixels with a match. Each is projected into the view; it matches if its depth differs by
+/// less than 7 cm from the model's point there and that point is visible in the frame. The intensity of the
+/// model is interpolated bilinearly, as in the article; as published it is that of the nearest pixel. The
+/// weight of a residual is 1 / (s + |r|), with s the root mean square of the residuals (as published: the
+/// root of their number, in the cost as well). Tangent of the step as match_planes().
 [[nodiscard]] PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view,
                                          const SE3& T_view_camera, config::PeerDefects defects,
                                          const Workers& workers);

@@ -14,7 +14,7 @@ using simd::Float8;
 using simd::Int8;
 
 constexpr float kMostApart_m = 0.1F;
-constexpr float kMostSine = 0.342020143F;  // of 20 degrees
+constexpr float kMostSine = 0.342020143F;  // sine of 20 degrees
 constexpr int kLanes = static_cast<int>(simd::kLanes);
 
 simd::Points gather(const PointMap& map, Int8 at) {
@@ -22,7 +22,7 @@ simd::Points gather(const PointMap& map, Int8 at) {
           simd::gather(map.z.data.data(), at)};
 }
 
-/// The values of a row from x on; 0 beyond its end.
+/// Values of a row from x on; 0 beyond its end.
 Float8 load_row(const Image<float>& image, int x, int y) {
   const float* const from = image.data.data() + image.index(x, y);
   if (x + kLanes <= image.width) return simd::load(from);
@@ -68,7 +68,7 @@ class PlaneMatcher {
   }
 
  private:
-  /// The nearest pixel of the view; what is not in it becomes invalid.
+  /// Nearest pixel of the view; clears `valid` outside the image.
   [[nodiscard]] Int8 place(const simd::Points& seen, Int8& valid) const {
     const PinholeCamera& camera = view_.camera;
     const auto width = static_cast<float>(camera.width_px), height = static_cast<float>(camera.height_px);

@@ -1,4 +1,4 @@
-// Point to plane: pixels of a frame against what a camera sees of the model.
+// Point-to-plane registration of a frame with a view of the model.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -7,9 +7,9 @@
 
 namespace fusebench::systems::elasticfusion::tracking {
 
-/// Sums over the pixels of a level that have a match: each is moved into the view's camera, and compared with
-/// the point at the nearest pixel along the normal there. Matches are within 10 cm, and their normals within
-/// 20 degrees. Steps move points in the frame of the view's camera (rotation, then translation).
+/// Sums over the pixels of a level with a match. Each is transformed into the view's camera and compared with
+/// the point at the nearest pixel along the normal there. Limits of a match: 10 cm, 20 degrees between the
+/// normals. The step moves points in the view's camera frame (rotation, then translation).
 [[nodiscard]] PoseSums match_planes(const LiveLevel& live, const ViewLevel& view, const SE3& T_view_camera,
                                     const Workers& workers);
 

@@ -10,7 +10,7 @@ namespace fusebench::systems::elasticfusion::tracking {
 
 namespace {
 
-constexpr float kOneSurface_m = 0.09F;  // three deviations of the filter of depth
+constexpr float kOneSurface_m = 0.09F;  // three standard deviations of the depth filter
 constexpr std::array<float, 5> kBinomial = {1, 4, 6, 4, 1};
 
 Image<float> as_float(const GreyImage& grey) {
@@ -20,7 +20,7 @@ Image<float> as_float(const GreyImage& grey) {
   return image;
 }
 
-/// Half the size: binomial means of the values at those pixels that have depth near that of the middle one.
+/// Half the size: binomial means over the pixels whose depth is close to that of the central one.
 Image<float> half_of_surface(const Image<float>& values, const DepthImage& depth_m) {
   Image<float> half((depth_m.width + 1) / 2, (depth_m.height + 1) / 2);
   for (int y = 0; y < half.height; ++y) {
@@ -45,14 +45,14 @@ Image<float> half_of_surface(const Image<float>& values, const DepthImage& depth
   return half;
 }
 
-/// The mean of four points, and of their normals.
+/// Means of four points and of their normals.
 void halve_points(const ViewLevel& fine, ViewLevel& coarse) {
   const int width = coarse.camera.width_px, height = coarse.camera.height_px;
   coarse.point.resize(width, height);
   coarse.normal.resize(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      // The last column or row of an image of odd size counts twice.
+      // For odd sizes, the last column or row is used twice.
       const int right = std::min(2 * x + 1, fine.camera.width_px - 1);
       const int below = std::min(2 * y + 1, fine.camera.height_px - 1);
       Eigen::Vector3f point = Eigen::Vector3f::Zero(), normal = point;
@@ -70,7 +70,7 @@ void halve_points(const ViewLevel& fine, ViewLevel& coarse) {
   }
 }
 
-/// Levels without intensities.
+/// Builds levels without intensities.
 LivePyramid surface_levels(const DepthImage& depth_m, const PointMap& normal, const PinholeCamera& camera,
                            const Workers& workers) {
   LivePyramid levels;
@@ -84,7 +84,7 @@ LivePyramid surface_levels(const DepthImage& depth_m, const PointMap& normal, co
   return levels;
 }
 
-/// No gradient where one of the eight neighbours has no surface, and so no intensity.
+/// Sets the gradient to zero where one of the eight neighbours has no surface, and so no intensity.
 void flatten_beside_holes(const DepthImage& depth_m, Gradient& gradient) {
   const auto has_hole = [&](int x, int y) {
     for (int v = std::max(0, y - 1); v <= std::min(depth_m.height - 1, y + 1); ++v) {

@@ -9,7 +9,7 @@ namespace fusebench::systems::elasticfusion::tracking {
 namespace {
 
 constexpr int kMostSteps = 10;
-constexpr double kLeastOverlap = 0.2;  // share of the pixels
+constexpr double kLeastOverlap = 0.2;  // as a share of the pixels
 
 struct RotationSums {
   Matrix3d information = Matrix3d::Zero();

@@ -124,7 +124,7 @@ TEST(BundlefusionSystem, GivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_EQ(one.model_blocks, four.model_blocks);
 }
 
-TEST(BundlefusionSystem, LosesFramesThatShowNothingAndSaysWhy) {
+TEST(BundlefusionSystem, LosesFramesWithoutKeypointsAndReportsTheReason) {
   testing::SimulatedRun recording = testing::simulate(16, {}, {0.15, 0.3, -0.2});
   std::ranges::fill(recording.frames[4].grey.data, std::uint8_t{90});
   std::ranges::fill(recording.frames[6].depth_m.data, 0.0F);
@@ -136,7 +136,7 @@ TEST(BundlefusionSystem, LosesFramesThatShowNothingAndSaysWhy) {
     EXPECT_EQ(run.outcomes[k + 1].status, FrameStatus::relocalised) << k;
   }
   EXPECT_EQ(run.outcomes[4].reason, "only 0 keypoints with depth");
-  EXPECT_EQ(run.outcomes[8].reason, "it matches no frame of its chunk");
+  EXPECT_EQ(run.outcomes[8].reason, "the frame matches no frame of its chunk");
   EXPECT_EQ(run.outcomes[11].status, FrameStatus::tracked);
   ASSERT_TRUE(run.revised.has_value());
   EXPECT_EQ(run.revised->size(), recording.frames.size() - 3);

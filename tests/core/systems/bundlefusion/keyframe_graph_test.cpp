@@ -15,7 +15,7 @@ namespace {
 constexpr double kWall_m = 2.0;
 constexpr double kStep_m = 0.5;  // between keyframes, along the wall
 
-/// A wall with marks; keyframes look at it one beside the other, each showing those in front of it.
+/// A wall with marks; keyframes are next to each other, and each shows the marks in front of it.
 class Wall {
  public:
   Wall() {
@@ -80,7 +80,7 @@ TEST(BundlefusionKeyframeGraph, PlacesKeyframesAndDropsAFalsePair) {
   }
 }
 
-TEST(BundlefusionKeyframeGraph, TriesAgainWhatMatchedNothing) {
+TEST(BundlefusionKeyframeGraph, RetriesUnmatchedKeyframes) {
   const Workers workers(1);
   const Wall wall;
   KeyframeGraph graph({}, workers);

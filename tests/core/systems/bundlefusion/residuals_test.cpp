@@ -69,7 +69,7 @@ TEST(BundlefusionResiduals, PlanesDescendToTheTrueMotion) {
   EXPECT_EQ(plane_sums(a, b, T_true, 0.1).information, Matrix6d::Zero());  // all is beyond
 }
 
-TEST(BundlefusionDenseVerification, TellsTheTrueMotionFromOthers) {
+TEST(BundlefusionDenseVerification, AcceptsTheTrueMotionOnly) {
   const testing::TexturedRoom room;
   const PinholeCamera camera = testing::small_camera();
   const SE3 T_true{so3_exp({0.05, -0.2, 0.01}), {0.1, -0.02, 0.04}};

@@ -59,7 +59,7 @@ TEST_F(InertialTerm, WeighsImagesByTheirErrorsAndNotByTheirUnits) {
   EXPECT_LT((step(noisier) - predicted).norm(), (expected - predicted).norm());
 }
 
-TEST_F(InertialTerm, GoesToThePredictionWhereImagesTellNothing) {
+TEST_F(InertialTerm, ReturnsThePredictionWithoutImageInformation) {
   const Vector6d back = step({});
   const SE3 reached = SE3{so3_exp(back.head<3>()), back.tail<3>()} * off_;
   EXPECT_LT(reached.translation.norm(), 1e-6);

@@ -1,4 +1,4 @@
-// What a camera sees of the textured room, as a frame and as a view of the model.
+// Views of the textured room, as a frame and as a view of the model.
 #pragma once
 
 #include "core/base/parallel.hpp"
@@ -19,7 +19,7 @@ inline systems::elasticfusion::surfels::LiveFrame live_at(const SE3& T_world_cam
       TexturedRoom{}.render(small_camera(), T_world_camera, 0), small_camera(), depth, kFixed, workers);
 }
 
-/// As if the model were exactly what the camera saw.
+/// A model equal to the measurement of the camera.
 inline systems::elasticfusion::surfels::SurfelView view_of(
     const systems::elasticfusion::surfels::LiveFrame& live) {
   systems::elasticfusion::surfels::SurfelView view;

@@ -16,7 +16,7 @@ namespace {
 
 SE3 turned(double yaw_rad) { return {so3_exp({0, yaw_rad, 0}), Vector3d::Zero()}; }
 
-TEST(FernRelocaliser, KnowsAFrameAgainAndStoresNoneTwice) {
+TEST(FernRelocaliser, RecognisesAFrameAndStoresNoneTwice) {
   const PinholeCamera camera = small_camera();
   const AnalyticScene scene = room_with_a_ball();
   FernRelocaliser relocaliser(camera, {}, config::PeerDefects::fixed);

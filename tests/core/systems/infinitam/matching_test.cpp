@@ -21,7 +21,7 @@ using testing::small_camera;
 
 namespace {
 
-/// The world's points moved by d, as PoseSums has it.
+/// World points moved by d, as in PoseSums.
 SE3 camera_after(const SE3& T_world_camera, const Vector6d& d) {
   return SE3{so3_exp(d.head<3>()), d.tail<3>()} * T_world_camera;
 }
@@ -46,7 +46,7 @@ class MatchDepth : public ::testing::Test {
   DepthMatching huber{.max_squared_distance_m2 = 0.8, .huber_m = 0.004, .near_m = 0.2, .far_m = 3.0};
 };
 
-TEST_F(MatchDepth, FindsNothingToDoAtTheTruePose) {
+TEST_F(MatchDepth, HasNoGradientAtTheTruePose) {
   const PoseSums sums = sums_at(SE3{}, squares);
   EXPECT_GT(sums.pixels, 0.7 * static_cast<double>(image.data.size()));
   // Residuals are those of the model: a fraction of a voxel.
@@ -73,7 +73,7 @@ TEST_F(MatchDepth, DescentIsTheSlopeOfTheCost) {
 }
 
 TEST_F(MatchDepth, StepsGoBackToTheTruePose) {
-  // Towards a corner of the room: three walls tell all six directions.
+  // Towards a corner of the room: three walls constrain all six directions.
   const SE3 truth{so3_exp({0, 0.75, 0}) * so3_exp({0.5, 0, 0}), Vector3d::Zero()};
   const tsdf::TsdfVolume corner = fuse(scene, camera, {truth});
   renderer.render(corner, truth, false, workers, view);
@@ -93,7 +93,7 @@ TEST_F(MatchDepth, GatesFarMatchesAndWeighsByDistanceAndConfidence) {
   DepthMatching weighted = huber;
   weighted.by_weight = true;
   weighted.weight_to_skip = 20;
-  // Without weights the view says 1 everywhere, which is less than 20.
+  // Without weights the view has 1 everywhere, which is less than 20.
   EXPECT_EQ(sums_at(SE3{}, weighted).pixels, 0);
   weighted.weight_to_skip = 0;
   weighted.weight_to_count = 2;

@@ -137,7 +137,7 @@ TEST(Fault, FaultsAddUpWithinAFrame) {
   EXPECT_EQ(last.exposure_s, 0.02);
 }
 
-TEST(CalibrationError, IsAsLargeAsAskedForInSeededDirections) {
+TEST(CalibrationError, HasTheRequestedSizeInSeededDirections) {
   const SE3 truth{so3_exp({0.1, -0.2, 0.3}), {0.09, 0.003, 0.002}};
   const CalibrationError error{1.5, 2};
   const SE3 wrong = miscalibrated(truth, error, 1);

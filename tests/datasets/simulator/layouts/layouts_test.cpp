@@ -83,7 +83,7 @@ Vector3d read_gravity(const fs::path& folder) {
 
 class Layouts : public ::testing::TestWithParam<RecordingLayout> {
  protected:
-  /// Ten frames in fast motion, without noise unless asked for.
+  /// Ten frames in fast motion, without noise by default.
   Recording make(bool noise = false, double time_offset_s = 0) {
     options_ = simulation_defaults(GetParam(), MotionPreset::fast, {160, 120}).value();
     options_.motion.from_rest = false;
@@ -116,7 +116,7 @@ TEST_P(Layouts, ReadsBackAsWhatItIs) {
   EXPECT_EQ(recording.format, to_string(GetParam()));
   EXPECT_TRUE(recording.simulated);
   EXPECT_EQ(recording.imu_source, ImuSource::recorded);
-  // That the first frame of ICL-NUIM has no pose is as published, and only noted.
+  // As published, the first frame of ICL-NUIM has no pose, which is only noted.
   EXPECT_EQ(recording.warnings, std::vector<std::string>{});
   ASSERT_EQ(recording.frames.size(), 10U);
   const LayoutDescription& layout = describe(GetParam());
@@ -149,7 +149,7 @@ TEST_P(Layouts, ImuBeginsBeforeTheImagesAndSurroundsThem) {
   }
 }
 
-TEST_P(Layouts, CameraTruthIsTheBodysByTheExtrinsic) {
+TEST_P(Layouts, GroundTruthOfTheCameraFollowsFromTheBody) {
   const Recording recording = make();
   Trajectory body;
   for (const StateRow& row : read_states(path() / "state_groundtruth.csv"))
@@ -164,7 +164,7 @@ TEST_P(Layouts, CameraTruthIsTheBodysByTheExtrinsic) {
   }
 }
 
-TEST_P(Layouts, ImuFromTheTrueStateFollowsTheTruth) {
+TEST_P(Layouts, ImuFromTheTrueStateFollowsTheGroundTruth) {
   const Recording recording = make();
   const Vector3d gravity = read_gravity(path());
   EXPECT_NEAR(gravity.norm(), kGravity_mps2, 1e-9);
@@ -197,7 +197,7 @@ TEST_P(Layouts, StatesTheTimeOffsetOfItsImu) {
   EXPECT_EQ(late.imu.front().timestamp_ns, first_ns);
 }
 
-/// What is seen of frame a in frame b when the cameras are where T_b_a says.
+/// Depth of frame a projected into frame b with the relative pose T_b_a.
 struct Overlap {
   double depth_m = 0;    ///< median difference
   double intensity = 0;  ///< mean difference, grey levels
@@ -240,7 +240,7 @@ TEST_P(Layouts, FramesReprojectOntoEachOther) {
   EXPECT_LT(truth.depth_m, 0.008);  // nearest pixels of 1/150 rad on tilted surfaces
   EXPECT_LT(truth.intensity, 10);
   EXPECT_GT(overlap(camera, *a, *b, SE3{}).depth_m, 3 * truth.depth_m);
-  // The truth is better than its neighbours in every direction.
+  // The true pose fits better than its neighbours in all directions.
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
       const SE3 shifted{Quaterniond::Identity(), sign * 0.03 * Vector3d::Unit(axis)};
@@ -251,7 +251,7 @@ TEST_P(Layouts, FramesReprojectOntoEachOther) {
   }
 }
 
-/// Share of the scene's vertices in view that lie where the depth image says.
+/// Share of the visible vertices of the scene that agree with the depth image.
 double share_on_surface(const Mesh& scene, const RgbdFrame& frame, const PinholeCamera& camera,
                         const SE3& T_camera_world) {
   std::size_t inside = 0;
@@ -270,7 +270,7 @@ double share_on_surface(const Mesh& scene, const RgbdFrame& frame, const Pinhole
   return static_cast<double>(on_surface) / static_cast<double>(inside);
 }
 
-TEST_P(Layouts, SceneLiesInTheWorldOfTheTruth) {
+TEST_P(Layouts, SceneIsInTheWorldOfTheGroundTruth) {
   const Recording recording = make();
   const auto scene = read_ply(path() / "scene.ply");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -360,8 +360,8 @@ INSTANTIATE_TEST_SUITE_P(All, Layouts,
                                            RecordingLayout::zr300),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
-// The preset of freiburg1, whose cameras the TUM layout has, says where its motion capture is.
-TEST(LayoutRig, TheTruthOfAllIsTheCameras) {
+// The preset of freiburg1, whose cameras the TUM layout has, gives the position of its motion capture.
+TEST(LayoutRig, GroundTruthIsThatOfTheCamera) {
   for (const RecordingLayout layout : {RecordingLayout::zr300, RecordingLayout::tum, RecordingLayout::icl}) {
     const auto rig = layout_rig(layout, {640, 480});
     ASSERT_TRUE(rig);

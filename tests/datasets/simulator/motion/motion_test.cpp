@@ -72,7 +72,7 @@ TEST(HandHeldMotion, ReachesItsPeakSpeedsAndNoMore) {
   });
 }
 
-TEST(HandHeldMotion, SaysWhatItReachedWhenItCannotMeetThePeaks) {
+TEST(HandHeldMotion, ReportsTheReachedPeaksOnFailure) {
   MotionOptions options = options_of(MotionPreset::slow, false);
   options.peak_speed_mps = 0.01;
   options.tremor_m = 0.005;  // moves faster than that on its own
@@ -294,7 +294,7 @@ TEST(HeadingTexture, LookingAroundFindsThePlainWall) {
 
 class MotionFile : public testing::InTemporaryFolder {
  protected:
-  /// A camera that moves along all axes and turns about all of them: right-handed, world z up.
+  /// A camera with motion along and about all axes: right-handed, world z up.
   static SE3 pose_at(double t) {
     const Quaterniond level((Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
     return {(level * so3_exp({0.2 * std::sin(t), 0.4 * std::sin(0.7 * t), 0.1 * t})).normalized(),
@@ -302,7 +302,7 @@ class MotionFile : public testing::InTemporaryFolder {
   }
   static constexpr int kPoses = 240;
 
-  /// The same path as ICL-NUIM's renderer would write it: y up and left-handed, by matrices instead of
+  /// The same path in the convention of ICL-NUIM's renderer: y up and left-handed, matrices instead of
   /// quaternions.
   static Eigen::Matrix4d icl_pose(int k) {
     Eigen::Matrix4d upright = Eigen::Matrix4d::Identity();  // z up to y up (right-handed: z backwards)
@@ -335,7 +335,7 @@ class MotionFile : public testing::InTemporaryFolder {
   }
 };
 
-TEST_F(MotionFile, ThreeKindsOfFilesTellTheSamePath) {
+TEST_F(MotionFile, ThreeKindsOfFilesGiveTheSamePath) {
   std::string tum = "# timestamp tx ty tz qx qy qz qw\n";
   std::string matrices = "# index c2w\n";
   std::string freiburg;
@@ -376,7 +376,7 @@ TEST_F(MotionFile, DrivesFasterAndShrinksIntoTheBox) {
   const auto twice = file_motion(path, options, span, wide);
   ASSERT_TRUE(once && twice);
   EXPECT_EQ(once->shrunk, 1);
-  // The same place at half the time, at twice the speed.
+  // At twice the speed, the same pose at half the time.
   const auto pose = [&](const FileMotion& motion, std::int64_t after_ns) {
     const std::int64_t begin = span.begin_ns;
     return motion.camera.evaluate(begin).T_world_body.inverse() *
@@ -429,7 +429,7 @@ TEST_F(MotionFile, ErrorsNameFileAndLine) {
   EXPECT_NE(longer.error().message.find("duration_s"), std::string::npos) << longer.error().message;
 }
 
-TEST(MotionFileReal, BothPackingsOfIclNuimTellTheSamePath) {
+TEST(MotionFileReal, BothPackingsOfIclNuimGiveTheSamePath) {
   const char* data = std::getenv("FUSEBENCH_DATA");
   const std::filesystem::path folder =
       std::filesystem::path(data == nullptr ? "" : data) / "icl_nuim_trajectories";

@@ -11,7 +11,7 @@ using namespace simulator::render;
 
 namespace {
 
-/// The plane z = 2 m with textures of one grey each, and a lamp beside the camera.
+/// The plane z = 2 m with uniform grey textures and a lamp next to the camera.
 SimulatedScene glossy_plane(float gloss) {
   SimulatedScene scene = testing::plane_at(2, 0);
   for (const float grey : {0.2F, 0.5F, 0.8F}) {

@@ -54,7 +54,7 @@ TEST_P(PresetRoute, StaysBelowItsPeaksAndComesToItsEnd) {
     const PeakSpeeds peaks = route.peaks(0, route.duration_s());
     EXPECT_LT(peaks.speed_mps, options.peak_speed_mps) << seed;
     EXPECT_LT(peaks.rate_radps, options.peak_rate_radps) << seed;
-    if (GetParam() == MotionPreset::shake_revisit) continue;  // goes on for as long as it is asked to
+    if (GetParam() == MotionPreset::shake_revisit) continue;  // continues for the requested duration
     EXPECT_GT(peaks.speed_mps, 0.5) << seed;
     EXPECT_LT(route.end_s(), route.duration_s() - 0.5) << seed;
     EXPECT_GT(route.end_s(), 0.75 * route.duration_s()) << seed;

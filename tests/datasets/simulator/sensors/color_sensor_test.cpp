@@ -42,7 +42,7 @@ ColorImage expose(const SimulatedScene& scene, const ColorSensor& sensor, const 
 
 double light_of(const Rgb& pixel) { return linear_from_srgb(pixel[0] / 255.0); }
 
-/// Where the edge from black to white lies in a row: the column up to which white would have to be black.
+/// Position of the edge from black to white in a row: the equivalent number of black columns.
 double edge_column(const ColorImage& image, int row) {
   double dark = 0;
   for (int u = 0; u < image.width; ++u) dark += 1 - light_of(image(u, row));

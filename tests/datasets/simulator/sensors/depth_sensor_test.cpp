@@ -44,7 +44,7 @@ Image<std::uint16_t> sense(const SimulatedScene& scene, const DepthSensor& senso
                      frame, Workers(threads));
 }
 
-/// Of the error of measured pixels against a constant depth, away from the image's border.
+/// Statistics of the error of measured pixels against a constant depth, away from the image border.
 struct DepthError {
   double mean_m = 0;
   double deviation_m = 0;
@@ -177,9 +177,8 @@ TEST(DepthSensor, HolesAreAtDepthEdges) {
 }
 
 TEST(DepthSensor, ActiveStereoDoesNotSeeWhatTheRightCameraDoesNot) {
-  // The board shifts by 480 * 0.07 / 1 = 33.6 px in the right image, the wall by 16.8: of the wall left of
-  // the board, the difference is hidden; so is the left band of the wall that lies outside of the right
-  // image.
+  // The board shifts by 480 * 0.07 / 1 = 33.6 px in the right image, the wall by 16.8. Left of the board, the
+  // difference is occluded on the wall, as is the left band of the wall outside the right image.
   const auto raw = sense(board_before_wall(), sensor_with(DepthNoise::zr300, kNative));
   for (int v = 210; v < 270; ++v) {
     for (int u = 305; u < 318; ++u) ASSERT_EQ(raw(u, v), 0) << u;

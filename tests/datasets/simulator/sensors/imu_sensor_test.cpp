@@ -37,7 +37,8 @@ PoseSpline motion_of(MotionPreset preset, std::uint64_t seed) {
                      {so3_exp({0.01, 0.02, 0}), {0.09, 0, 0}});
 }
 
-/// Where the samples lead from the true state at begin to end, and what their noise predicts.
+/// State that the samples give by integration from the true state at begin to end, and the covariance by
+/// their noise.
 struct Drift {
   Vector3d position_m;  ///< in the IMU frame at the beginning
   Vector3d velocity_mps;

@@ -131,7 +131,7 @@ TEST(ColorProcessing, AMosaicKeepsEvenColors) {
   EXPECT_NEAR(image(5, 5)[2], 255 * simulator::texture::srgb_from_linear(0.7), 0.6);
 }
 
-/// Of green over an even image: variance, and correlation of pixels that are side by side.
+/// Statistics of green over an even image: variance, and correlation of neighbouring pixels.
 std::array<double, 2> noise_of(const ColorImage& image) {
   double mean = 0, squares = 0, product = 0;
   for (const Rgb& pixel : image.data) mean += pixel[1] / static_cast<double>(image.data.size());
@@ -160,7 +160,7 @@ TEST(ColorProcessing, TheSameBytesForAnyThreadsAndOthersForOtherKeys) {
   EXPECT_NE(one, processed_color(light, noisy_mosaic(), 2, 8, Workers(1)).data);
 }
 
-// Of kinect_like(), in pixels of the sensor's 640 columns.
+// Pixels of kinect_like(), in units of the sensor's 640 columns.
 constexpr double kFocalBaseline_px_m = 520 * 0.075;
 
 DepthSensor kinect_like() {

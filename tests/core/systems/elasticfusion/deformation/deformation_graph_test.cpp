@@ -41,11 +41,11 @@ TEST(DeformationGraph, SharesAddUpAndFallWithDistance) {
     sum += share;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
-  // The same place in other times belongs to other nodes.
+  // The same position at another time belongs to other nodes.
   for (const std::size_t node : graph->influence_of({{2.51, 0.1, 0.1}, 0}).node) EXPECT_LT(node, 20U);
 }
 
-TEST(DeformationGraph, LeavesEverythingWhereItIsIfThatIsAsked) {
+TEST(DeformationGraph, KeepsFixedNodes) {
   auto graph = DeformationGraph::make(corridor());
   std::vector<PointConstraint> constraints;
   for (int i = 0; i < 10; ++i) constraints.push_back(held({0.5 * i, 0.1, 0.2}, {0.5 * i, 0.1, 0.2}, 10 * i));

@@ -22,12 +22,11 @@ config::ElasticfusionConfig local_loops() {
   return config;
 }
 
-/// A camera that looks at the same part of the room again and again, each time with the drift that it has
-/// come to by then.
+/// A camera with repeated views of one part of the room, each with the accumulated drift.
 class LoopCloser : public ::testing::Test {
  protected:
-  /// The part as seen in the frames before `last`, from a camera that believes to be at T_world_camera.
-  /// Returns the first of its surfels.
+  /// The part in the frames before `last`, for an estimated pose T_world_camera. Returns the index of the
+  /// first of its surfels.
   std::size_t visit(const SE3& T_world_camera, std::int32_t last) {
     surfels::SurfelMap seen;
     fusion_.start(live_, {T_world_camera, last}, seen);
@@ -53,7 +52,7 @@ class LoopCloser : public ::testing::Test {
     return closer_.close(live_, view, time, map_, poses_);
   }
 
-  /// Of the surfels of a visit, which all see the same, from those of the first.
+  /// Distance of the surfels of a visit, which all show the same part, to those of the first visit.
   [[nodiscard]] double mean_distance_m(std::size_t first, std::size_t count) const {
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -78,7 +77,7 @@ TEST_F(LoopCloser, TheActiveModelComesToTheInactiveOne) {
   ASSERT_TRUE(close(300));
   EXPECT_LT(poses_.back().T_world_camera.translation.norm(), 5e-4);
   EXPECT_LT(mean_distance_m(0, again), 5e-4);
-  // What was created longest before the end of the visit hangs between both.
+  // Surfels created early in the visit are between both.
   EXPECT_LT(mean_distance_m(again, again), 0.5 * apart_m);
 }
 

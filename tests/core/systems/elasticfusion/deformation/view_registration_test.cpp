@@ -44,7 +44,7 @@ TEST_F(ViewRegistration, FindsTheMotionBetweenTwoViews) {
   EXPECT_LT(error_m(deformation::register_view(live_, model_, config_, workers_)), 5e-4);
 }
 
-TEST_F(ViewRegistration, HolesAreNotBlackThings) {
+TEST_F(ViewRegistration, HolesAreNotBlackSurfaces) {
   const surfels::SurfelView patches = in_patches(live_);
   const double found_m = error_m(deformation::register_view(patches, model_, config_, workers_));
   EXPECT_LT(found_m, 1e-3);

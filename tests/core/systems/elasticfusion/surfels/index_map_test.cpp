@@ -42,7 +42,7 @@ class ScatteredSurfels : public ::testing::Test {
     }
   }
 
-  /// By a look at all cells.
+  /// Reference: exhaustive search over all cells.
   [[nodiscard]] std::vector<std::size_t> expected(int column, int row) const {
     std::vector<std::size_t> numbers;
     for (int y = row - kScale; y < row + kScale; ++y) {
@@ -74,7 +74,7 @@ TEST_F(ScatteredSurfels, ALookMeetsTheNearestOfEachCellRowByRow) {
   }
 }
 
-TEST_F(ScatteredSurfels, NothingOfAMapBeforeIsMet) {
+TEST_F(ScatteredSurfels, DoNotDependOnAnEarlierMap) {
   IndexMap index;
   index.build(surfels, kSmallCamera, {}, {0, 200, true, -1}, Workers{1});
   index.build({}, kSmallCamera, {}, {0, 200, true, -1}, Workers{1});

@@ -53,8 +53,8 @@ TEST_F(Tracking, PlanesHaveTheSlopeOfTheirCost) {
 }
 
 TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
-  // One pixel that looks at a known point of a view of one surface: the model's point is where the view sees
-  // it, and the frame's side is linear by its gradient.
+  // One pixel at a given point of a view of one surface. The model point is at its projection in the view,
+  // and the frame is linear by its gradient.
   const auto pixels = tracking::telling_pixels(live[0], 5);
   ASSERT_GT(pixels.z.size(), 1000U);
   const PinholeCamera& camera = live[0].camera;
@@ -67,7 +67,7 @@ TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
                               static_cast<double>(pixels.z[i]));
     const Vector2d gradient(static_cast<double>(pixels.dx[i]), static_cast<double>(pixels.dy[i]));
     if (sums.pixels == 0) continue;
-    // What the point of the model gives in the frame, by the frame's linear image.
+    // Intensity of the frame's linear image at the model point.
     const Vector3d seen = T_view_camera * seen_point;
     const Vector2d at = camera.project(seen);
     const double expected =
@@ -114,7 +114,7 @@ TEST_F(Tracking, WeightsAreByTheDeviationOrAsPublishedByTheNumber) {
 
 TEST_F(Tracking, FindsTheMotionBetweenTwoFrames) {
   config::ElasticfusionConfig config;
-  // As published intensities are compared at whole pixels: half a pixel is what can be expected, here 2 m
+  // As published, intensities are compared at whole pixels: an error of half a pixel is expected, here 2 m
   // away.
   for (const auto& [defects, expected_px] :
        {std::pair{kFixed, 0.1}, {config::PeerDefects::as_published, 0.5}}) {
