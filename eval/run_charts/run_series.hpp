@@ -9,10 +9,10 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "eval/run_files/filter_tables.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/frame_table.hpp"
 #include "eval/run_files/loop_table.hpp"
-#include "eval/run_files/filter_tables.hpp"
 
 namespace fusebench::run_charts {
 
