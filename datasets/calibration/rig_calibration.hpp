@@ -25,7 +25,7 @@
 //     gyroscope_bias_walk_radps2_sqrthz = 5e-5
 //     accelerometer_bias_walk_mps3_sqrthz = 6.3e-4
 //     time_offset_s = 0.0       # the IMU's stamp minus the images' stamp of the same instant
-//     gyroscope_scale = [1, 1, 1]      # what is measured is so many times the truth, by axis; none: 1
+//     gyroscope_scale = [1, 1, 1]      # what is measured is so many times the ground truth, by axis; none: 1
 //     accelerometer_scale = [1, 1, 1]  # the same
 #pragma once
 
@@ -52,7 +52,8 @@ struct ImuCalibration {
   SE3 T_imu_camera;  ///< camera: the colour camera
   ImuNoise noise;
   double time_offset_s = 0;  ///< the IMU's stamp minus the images' stamp of the same instant
-  Vector3d gyroscope_scale = Vector3d::Ones();      ///< what is measured is so many times the truth, by axis
+  Vector3d gyroscope_scale =
+      Vector3d::Ones();  ///< what is measured is so many times the ground truth, by axis
   Vector3d accelerometer_scale = Vector3d::Ones();  ///< the same
 };
 

@@ -51,7 +51,7 @@ std::string imu_yaml(const recording::Recording& recording) {
              noise.accelerometer_mps2_sqrthz, noise.accelerometer_bias_mps3_sqrthz);
 }
 
-/// The body's poses in the truth's world.
+/// The body's poses in the ground truth's world.
 Trajectory body_poses(const recording::Recording& recording) {
   const SE3 T_camera_body = T_body_camera(recording).inverse();
   Trajectory poses = recording.ground_truth;

@@ -105,7 +105,7 @@ Result<void> ExportPlace::move_files() const {
     names.push_back(entry->path().filename());
   }
   if (error) return cannot_be_written(out_, error.message());
-  // The file that was asked for comes last: where it is, those beside it are as well, with the label of
+  // The file that was requested comes last: where it is, those beside it are as well, with the label of
   // simulated data among them.
   std::ranges::sort(names, {}, [&](const fs::path& name) { return std::pair(name == name_, name); });
   for (const fs::path& name : names) {

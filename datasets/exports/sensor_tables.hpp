@@ -17,11 +17,11 @@ namespace fusebench::exports {
 [[nodiscard]] std::string imu_table(std::span<const ImuSample> samples);
 
 /// state_groundtruth_estimate0/data.csv: "timestamp [ns], position [m], attitude (w x y z), velocity [m/s],
-/// gyroscope bias [rad/s], accelerometer bias [m/s^2]": of the IMU in the truth's world.
+/// gyroscope bias [rad/s], accelerometer bias [m/s^2]": of the IMU in the ground truth's world.
 [[nodiscard]] std::string state_table(std::span<const filter::StampedState> states);
 
-/// Its first eight columns, where velocities and biases are not known: poses of the body in the truth's
-/// world.
+/// Its first eight columns, where velocities and biases are not known: poses of the body in the ground
+/// truth's world.
 [[nodiscard]] std::string pose_table(std::span<const StampedPose> T_world_body);
 
 /// "frame timestamp" by row, in seconds: for formats whose frames have numbers and no time.

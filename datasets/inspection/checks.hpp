@@ -41,8 +41,9 @@ void check_motion(const recording::Recording& recording, Inspection& out);
 
 /// Saturation, repeated values and units of the IMU; gravity and biases at rest.
 void check_imu_values(const recording::Recording& recording, Inspection& out);
-/// Time offset, axes, scale and gyroscope bias against the camera's turns: those of the truth, if no error
-/// was found in it so far, else those of the images. Needs the checks of the truth and its warping.
+/// Time offset, axes, scale and gyroscope bias against the camera's turns: those of the ground truth, if no
+/// error was found in it so far, else those of the images. Needs the checks of the ground truth and its
+/// warping.
 void check_imu_alignment(const recording::Recording& recording, const Workers& workers,
                          const InspectOptions& options, Inspection& out);
 /// Axes of gyroscope and accelerometer, each on its own. Needs the alignment.

@@ -179,8 +179,8 @@ struct ComparedTurns {
   [[nodiscard]] bool related() const { return fit && is_related(*fit); }
 };
 
-/// With the truth, if there is one without errors. If the gyroscope disagrees with the truth, the images
-/// decide which of the two is wrong.
+/// With the ground truth, if there is one without errors. If the gyroscope disagrees with the ground truth,
+/// the images decide which of the two is wrong.
 ComparedTurns compare_turns(const recording::Recording& recording, const Workers& workers,
                             const InspectOptions& options, Inspection& out) {
   const auto by_images = [&] {

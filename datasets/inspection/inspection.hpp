@@ -189,7 +189,7 @@ struct ReprojectionMeasurement {
   double depth_residual_m = 0;  ///< medians over the pairs
   double depth_residual_share = 0;
   double intensity_residual_grey = 0;
-  double static_factor = 1;  ///< residuals with no motion at all, divided by those with the truth
+  double static_factor = 1;  ///< residuals with no motion at all, divided by those with the ground truth
   std::vector<HypothesisResult> hypotheses;
 };
 

@@ -28,7 +28,8 @@ constexpr double kCorrectionFactor = 0.88;
 constexpr int kRounds = 3;
 constexpr double kOtherImageSize = 0.1;  // logarithm: less is an error of the focal length
 // True poses leave a small part of the residuals of no motion at all; poses of something else leave about as
-// much. The test is not significant where the truth itself hardly moves: turn plus baseline over depth.
+// much. The test is not significant where the ground truth itself hardly moves: turn plus baseline over
+// depth.
 constexpr double kStaticFactor = 1.1;
 constexpr double kMinMotion_rad = radians(3);
 // A camera that stands still is explained by any poses, depth scale, focal length and clock alike.
@@ -244,7 +245,7 @@ void search_misreadings(const recording::Recording& recording, const WarpTest& t
   }
 }
 
-/// Whether something was found that makes the truth disagree with the images.
+/// Whether something was found that makes the ground truth disagree with the images.
 bool inconsistency_is_explained(const Inspection& out) {
   return std::ranges::any_of(out.findings, [](const Finding& f) {
     return f.severity == Severity::error &&
@@ -253,7 +254,7 @@ bool inconsistency_is_explained(const Inspection& out) {
   });
 }
 
-/// Image motion of the median pair according to the truth.
+/// Image motion of the median pair according to the ground truth.
 double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m) {
   std::vector<double> motion_rad;
   for (const ReprojectionPair& pair : measured.pairs)

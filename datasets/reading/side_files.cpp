@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kLongestLabel = 200;
 
-/// Positions of the truth are used in double precision only, but they must leave room for squares.
+/// Positions of the ground truth are used in double precision only, but they must leave room for squares.
 Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
   for (const StampedPose& pose : truth) {
     const Vector3d& position_m = pose.T_world_camera.translation;

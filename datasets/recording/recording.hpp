@@ -55,7 +55,7 @@ struct Recording {
   std::vector<AccelerometerSample>
       accelerometer;  ///< TUM's Kinect; not an IMU (no gyroscope), no estimator uses it
   std::vector<StampedPose>
-      ground_truth;         ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
+      ground_truth;  ///< T_groundtruth_camera: colour camera in the ground truth's own world; may be empty
   std::string truth_label;  ///< begins with "pseudo ground truth" and says whose estimate ground_truth is,
                             ///< e.g. kPseudoGroundTruth; empty where it is independent of the images
   std::optional<calibration::RigCalibration> calibration;  ///< as read, before undistortion; of what files

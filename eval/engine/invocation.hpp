@@ -37,7 +37,7 @@ struct Invocation {
 /// <out>/.fusebench/invocations/<hash8>.{json,toml}; the same one once. Returns the file. Error io.
 [[nodiscard]] Result<std::filesystem::path> keep(const Invocation& invocation);
 
-/// What was asked for in one folder of runs is kept in another as well, as far as it can be written. Returns
+/// What was requested in one folder of runs is kept in another as well, as far as it can be written. Returns
 /// how many were left out, since they or their suites cannot be read.
 std::size_t copy_invocations(const std::filesystem::path& from, const std::filesystem::path& into);
 

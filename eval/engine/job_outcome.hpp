@@ -35,7 +35,7 @@ struct BatchOutcome {
 void forget_not_started(const BatchJob& job);
 
 /// Whether the run is there, ok or lost and whole, with the files that are to be kept of it, and with its
-/// profile if one is asked for.
+/// profile if one is requested.
 [[nodiscard]] bool is_finished(const run::PreparedRun& run, const run::RecordHead& head);
 
 /// A run whose process left no results: a record in the run's place that says why, with what the process

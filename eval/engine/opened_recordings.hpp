@@ -23,7 +23,7 @@ namespace fusebench::engine {
 [[nodiscard]] Result<void> try_opening(const std::function<Result<void>()>& open,
                                        const suites::RunLimits& limits, const std::atomic<bool>* stop);
 
-/// The recording that was asked for last, as it is and in each form in which runs over the window that was
+/// The recording that was requested last, as it is and in each form in which runs over the window that was
 /// asked for last see it: jobs over one recording stand together, those over one window as well, and reading
 /// its lists and fingerprinting its images once is enough.
 class OpenedRecordings {

@@ -20,7 +20,7 @@ struct ListedRun {
 };
 
 /// Every run below a folder, by path. What is damaged, or no record that can be read, is a failed run with
-/// that reason; of the other files only the sizes are looked at, unless their content shall be verified.
+/// that reason; of the other files only the sizes are checked, unless their content shall be verified.
 /// Error data_missing.
 [[nodiscard]] Result<std::vector<ListedRun>> list_runs(const std::filesystem::path& root,
                                                        bool verify = false);

@@ -40,7 +40,7 @@ struct Awaited {
   fs::path folder;
   std::string run_id;
   std::size_t frames = 0;
-  /// Of a record of an earlier time that is made again: it failed, or lacks files that are asked for.
+  /// Of a record of an earlier time that is made again: it failed, or lacks files that are requested.
   std::optional<fs::file_time_type> written_before;
   int attempts = 0;
 };

@@ -36,7 +36,7 @@ Result<Placeholders> prepare_input(const ExternalProgram& program, const recordi
   fs::path calibration;
   if (program.input) {
     input = place.work_folder / "export";
-    recording::Recording without_truth = recording;  // a system that is judged does not see the truth
+    recording::Recording without_truth = recording;  // a system that is judged does not see the ground truth
     without_truth.ground_truth.clear();
     const auto exported = exports::export_recording(without_truth, *program.input, input);
     if (!exported) return tl::unexpected(exported.error());

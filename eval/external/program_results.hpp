@@ -32,8 +32,8 @@ struct ProgramPlace {
 };
 
 /// What the program does wrong (it dies, hangs, leaves no trajectory, half a one, or one that cannot be read
-/// or is of another scale than the truth) is a reason in the results that names the file and line. Errors:
-/// those of the export, io, and run_failed if it was stopped.
+/// or is of another scale than the ground truth) is a reason in the results that names the file and line.
+/// Errors: those of the export, io, and run_failed if it was stopped.
 [[nodiscard]] Result<ProgramResults> run_external_program(const ExternalProgram& program,
                                                           const recording::Recording& recording,
                                                           const ProgramPlace& place,

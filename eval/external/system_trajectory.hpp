@@ -28,7 +28,7 @@ struct SystemTrajectory {
 /// last pose counts. Warnings say what was repaired, and that poses extend over less than a hundredth of the
 /// truth, as those in another unit do. Errors: those of trajectory_files::load_trajectory(),
 /// image_logs::read_sens_trajectory() and poses_of_frames(); data_corrupt (poses that extend over more than a
-/// hundred times the truth).
+/// hundred times the ground truth).
 [[nodiscard]] Result<FramePoses> read_system_trajectory(const SystemTrajectory& trajectory,
                                                         const recording::Recording& recording,
                                                         std::vector<std::string>& warnings);

@@ -18,7 +18,7 @@ namespace {
 using loops::LoopCandidate;
 using loops::Place;
 
-/// Of places, by index; nothing where the truth has a gap.
+/// Of places, by index; nothing where the ground truth has a gap.
 using TruePoses = std::vector<std::optional<SE3>>;
 
 TruePoses true_poses_of(std::span<const Place> places, const Trajectory& truth) {

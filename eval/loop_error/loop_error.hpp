@@ -1,4 +1,4 @@
-// Loops of a run against the truth.
+// Loops of a run against the ground truth.
 #pragma once
 
 #include "core/base/error.hpp"

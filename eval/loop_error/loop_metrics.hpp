@@ -1,5 +1,5 @@
-// What loops are worth, against the truth: which returns to a place were found, which loops are false, how
-// well they know their own errors, and how much better poses could have become.
+// What loops are worth, against the ground truth: which returns to a place were found, which loops are false,
+// how well they know their own errors, and how much better poses could have become.
 #pragma once
 
 #include <cstddef>

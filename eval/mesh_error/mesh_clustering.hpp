@@ -1,4 +1,4 @@
-// A mesh with fewer triangles, to be looked at.
+// A mesh with fewer triangles, to be checked.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Two meshes from anywhere, compared as it is asked for.
+// Two meshes from anywhere, compared as it is requested.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,11 @@ namespace fusebench::mesh_error {
 
 struct MeshRequest {
   MeshErrorOptions errors = {};
-  trajectory_error::Alignment start = {};  ///< of the reconstruction to the truth, before any registration
+  trajectory_error::Alignment start =
+      {};  ///< of the reconstruction to the ground truth, before any registration
   std::optional<RegistrationOptions> icp = {};
-  std::optional<MeshViews> views = {};  ///< from where the truth was seen; absent: all of it counts
-  double least_observed = 0.2;          ///< share of the truth's samples
+  std::optional<MeshViews> views = {};  ///< from where the ground truth was seen; absent: all of it counts
+  double least_observed = 0.2;          ///< share of the ground truth's samples
   bool any_size = false;                ///< meshes whose sizes differ as units do are compared all the same
   bool vertex_errors = false;           ///< asks for the distance of each vertex of the reconstruction
 };
@@ -43,11 +44,11 @@ struct MeshEvaluation {
   std::size_t truth_samples = 0;
   std::size_t truth_observed = 0;
   MeshErrorResult errors;                     ///< completeness of what is observed
-  std::optional<MeshErrorResult> not_culled;  ///< with views: of all of the truth
+  std::optional<MeshErrorResult> not_culled;  ///< with views: of all of the ground truth
   std::optional<RegistrationResult> icp;
   std::string icp_doubt;  ///< why icp may have found another place, and what settles it; empty: no reason
   SurfregScore surfreg;
-  std::vector<double> vertex_errors_m;  ///< if they were asked for
+  std::vector<double> vertex_errors_m;  ///< if they were requested
 };
 
 /// Largest of a mesh's extents over the other's, from which on one is not taken for metres.
@@ -56,14 +57,14 @@ inline constexpr double kOtherUnit = 20;
 /// Where nothing says where the reconstruction is (start.mode is "none"), icp takes the nearest points for
 /// the same ones. That holds near the right place only, and a wrong one is not told from a bad reconstruction
 /// by its distances. So there is a doubt (icp_doubt) if the reconstruction moved by more than kNearShare of
-/// its own radius (rms; a turn of 14 degrees), or if the points that count are still further from the truth
-/// (rms) than kCloseShare of the largest threshold.
+/// its own radius (rms; a turn of 14 degrees), or if the points that count are still further from the ground
+/// truth (rms) than kCloseShare of the largest threshold.
 inline constexpr double kNearShare = 0.25;
 inline constexpr double kCloseShare = 0.4;
 
 /// Errors data_corrupt: those of MeshComparison::create and register_points; boxes that differ kOtherUnit
 /// times in size; a truth of which less than least_observed is seen; or a registration that leaves the points
-/// that count further from the truth (rms) than the largest threshold.
+/// that count further from the ground truth (rms) than the largest threshold.
 [[nodiscard]] Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction,
                                                    const PreciseMesh& truth, const MeshRequest& request,
                                                    const Workers& workers);

@@ -1,7 +1,7 @@
 // How far a reconstructed surface is from the true one, and how much of the true one it has.
 //
 // Accuracy: distances from samples of the reconstruction to the true surface. Completeness: distances from
-// samples of the truth to the reconstruction. Both are exact distances to triangles, in metres.
+// samples of the ground truth to the reconstruction. Both are exact distances to triangles, in metres.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ struct MeshDistances {
 struct MeshThreshold {
   double tau_m = 0;
   double precision = 0;  ///< of the reconstruction's
-  double recall = 0;     ///< of the truth's
+  double recall = 0;     ///< of the ground truth's
   double fscore = 0;     ///< harmonic mean; 0 if both are 0
 };
 
@@ -46,7 +46,7 @@ struct MeshErrorOptions {
 };
 
 struct MeshErrorResult {
-  trajectory_error::Alignment alignment;  ///< of the reconstruction to the truth
+  trajectory_error::Alignment alignment;  ///< of the reconstruction to the ground truth
   MeshDistances accuracy;
   MeshDistances completeness;
   double chamfer_m = std::numeric_limits<double>::quiet_NaN();  ///< mean of both means
@@ -59,7 +59,7 @@ struct MeshErrorResult {
 
 inline constexpr double kGhostDistance_m = 0.03;
 
-/// Which samples of the truth count.
+/// Which samples of the ground truth count.
 enum class TruthPart { observed, all };
 
 /// Distances from points to a surface, in the order of the points.
@@ -70,7 +70,7 @@ enum class TruthPart { observed, all };
 /// with_discs().
 class MeshComparison {
  public:
-  /// Without views all of the truth is taken as observed. Errors data_corrupt: those of check_mesh and
+  /// Without views all of the ground truth is taken as observed. Errors data_corrupt: those of check_mesh and
   /// sample_mesh, and a truth of which no sample is observed.
   [[nodiscard]] static Result<MeshComparison> create(const PreciseMesh& reconstruction,
                                                      const PreciseMesh& truth,
@@ -98,7 +98,7 @@ class MeshComparison {
   TriangleTree truth_;
   std::vector<Vector3d> reconstruction_points_;
   std::vector<Vector3d> truth_points_;     ///< all of them
-  std::vector<Vector3d> observed_points_;  ///< of the truth
+  std::vector<Vector3d> observed_points_;  ///< of the ground truth
 };
 
 }  // namespace fusebench::mesh_error

@@ -14,16 +14,16 @@
 
 namespace fusebench::mesh_error {
 
-/// What makes a point of the truth an observed one, in some view that has it inside its image and its range
-/// of depth.
+/// What makes a point of the ground truth an observed one, in some view that has it inside its image and its
+/// range of depth.
 enum class Culling {
   frustum,    ///< nothing more (iMAP, NICE-SLAM)
-  occlusion,  ///< nothing of the truth lies between it and the camera, but for the last centimetre
+  occlusion,  ///< nothing of the ground truth lies between it and the camera, but for the last centimetre
   depth,      ///< the view's depth image measured there, and the point is no more than 3 cm or 2 % behind
 };
 [[nodiscard]] std::string_view to_string(Culling culling);  ///< "frustum", "occlusion", "depth"
 
-/// From where the truth was seen.
+/// From where the ground truth was seen.
 struct MeshViews {
   PinholeCamera camera;
   double min_depth_m = 0;

@@ -12,8 +12,8 @@
 namespace fusebench::mesh_error {
 
 struct RegistrationOptions {
-  /// Of the points, those nearest to the surface, that count in a step: what has no counterpart in the truth
-  /// must not pull.
+  /// Of the points, those nearest to the surface, that count in a step: what has no counterpart in the ground
+  /// truth must not pull.
   double kept = 0.9;
   int max_steps = 100;
   double converged_m = 1e-7;  ///< a step that moves the points by less (rms) is the last

@@ -36,8 +36,8 @@ class VertexTree {
 };
 
 /// The score of SurfReg (the program that ICL-NUIM's authors publish, and that tables of ElasticFusion and
-/// BundleFusion use): mean distance from the vertices of a reconstruction to the nearest vertex of the truth.
-/// One direction only; depends on how densely both are meshed.
+/// BundleFusion use): mean distance from the vertices of a reconstruction to the nearest vertex of the ground
+/// truth. One direction only; depends on how densely both are meshed.
 struct SurfregScore {
   double vertex_mean_m = 0;  ///< in the alignment that is given
   /// After ten steps of point-to-point ICP, which the program takes if the mean is below 5 cm; it prints the

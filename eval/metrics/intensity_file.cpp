@@ -77,7 +77,7 @@ bool IntensityReader::read(T& value) {
 
 template <class T>
 bool IntensityReader::read_list(std::vector<T>& values, std::size_t count) {
-  // Checked before the memory is asked for: a damaged count must not allocate gigabytes.
+  // Checked before the memory is requested: a damaged count must not allocate gigabytes.
   if (bytes_left_ < count * sizeof(T)) return false;
   values.resize(count);
   for (T& value : values) {

@@ -7,7 +7,7 @@
 // patch); the AIE of a run is the mean over its frames. Frames without tracked pixels are left out and
 // counted.
 //
-// A method can lower its AIE by dropping difficult pixels, so two more numbers stand beside it: the same over
+// A method can lower its AIE by dropping difficult pixels, so two more numbers are next to it: the same over
 // the patches that passed the gate (`accepted`), and the AIE on the pixels that all compared runs have in
 // common.
 #pragma once

@@ -64,10 +64,10 @@ struct NeesResult {
 };
 using ConsistencyResult = std::array<NeesResult, kStateParts.size()>;
 
-/// The world of the estimates is the camera at the first of them, whose true pose moves the truth there;
-/// nothing is fitted. The error is truth (-) estimate in the tangent space at the estimate. A part whose
-/// covariance is singular in all frames has count 0. Errors data_corrupt: no estimates, or no truth around
-/// the first one or any later one.
+/// The world of the estimates is the camera at the first of them, whose true pose moves the ground truth
+/// there; nothing is fitted. The error is truth (-) estimate in the tangent space at the estimate. A part
+/// whose covariance is singular in all frames has count 0. Errors data_corrupt: no estimates, or no truth
+/// around the first one or any later one.
 [[nodiscard]] Result<ConsistencyResult> consistency(std::span<const filter::StampedState> truth,
                                                     std::span<const filter::StampedEstimate> estimates,
                                                     const SE3& T_imu_camera);

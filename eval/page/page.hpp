@@ -136,7 +136,7 @@ struct PageParagraphs {
   std::vector<std::string> lines;
 };
 
-/// Text that is folded away until it is asked for.
+/// Text that is folded away until it is requested.
 struct PageDetails {
   std::string summary;
   PageTable table;

@@ -44,7 +44,7 @@ struct ProbedFrame {
   std::optional<SE3> T_truth_camera;
 };
 
-/// Loads frames, and the true surface if that is asked for.
+/// Loads frames, and the true surface if that is requested.
 class FrameLoader {
  public:
   explicit FrameLoader(const recording::Recording& recording) : recording_(recording) {}

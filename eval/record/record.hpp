@@ -172,7 +172,7 @@ struct RecordedFrames {
 /// "12 frames in 2 segments apart from the map, 1 joined"; empty without segments.
 [[nodiscard]] std::string segments_text(const RecordedFrames& frames);
 
-/// Tracked frames / frames that the run was asked for; 0 of a run that did not begin.
+/// Tracked frames / requested frames; 0 of a run that did not begin.
 [[nodiscard]] double coverage_share(const RecordedFrames& frames);
 
 struct RecordedModel {

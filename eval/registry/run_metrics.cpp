@@ -194,7 +194,7 @@ constexpr auto kMetrics = std::to_array<RunMetric>({
          .columns = systems | study,
          .of_every_run = true,
          .tolerance = kExact},
-        "frames with a pose / frames that the run was asked for; 0 of a run that did not begin",
+        "frames with a pose / frames that were requested; 0 of a run that did not begin",
         "metrics.coverage.share", coverage),
     frames_row({"frames_tracked", "tracked"}, none, kExact, "frames with a pose, the first included",
                "frames.tracked", frame_count<&record::RecordedFrames::tracked>, kLarger),
@@ -211,7 +211,7 @@ constexpr auto kMetrics = std::to_array<RunMetric>({
         {.better = kLarger, .kind = count, .of_every_run = true, .tolerance = kNoGate},
         "segments in which a place of the map was recognised; their final poses are in the map",
         "frames.segments_joined", frame_count<&record::RecordedFrames::segments_joined>),
-    frames_row({"frames_total", "frames"}, none, kExact, "frames that the run was asked for", "frames.total",
+    frames_row({"frames_total", "frames"}, none, kExact, "frames that were requested", "frames.total",
                frame_count<&record::RecordedFrames::total>, kNeither),
     row({"runs_not_ok", "not ok"}, {"1", 1, 0},
         {.kind = count, .columns = study, .of_every_run = true, .tolerance = kNoGate},
@@ -268,12 +268,11 @@ constexpr auto kMetrics = std::to_array<RunMetric>({
         of<&Metrics::mesh, &Mesh::poses, &MeshErrors::chamfer_m>),
     row({"mesh_fscore", "mesh F-score [%]"}, kPercent, {.better = kLarger},
         "harmonic mean of precision and recall: shares of the samples of the reconstruction and "
-        "of the truth "
-        "that are within the first threshold (5 mm) of the other",
+        "of the ground truth that are within the first threshold (5 mm) of the other",
         "metrics.mesh.thresholds.0.fscore", mesh_fscore),
     row({"mesh_ghost_share", "ghosts [%]"}, {"1", 100}, {},
-        "samples of the reconstruction more than 3 cm from the truth in space that a true camera sees to be "
-        "free / all samples",
+        "samples of the reconstruction more than 3 cm from the ground truth in space that a true camera sees "
+        "to be free / all samples",
         "metrics.mesh.ghost_share", mesh_ghosts),
     row({"model_vertices", "vertices"}, {"vertices", 1, 0},
         {.better = kNeither, .kind = count, .tolerance = kExact}, "vertices of the reconstruction",

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMean_ns = 100'000'000;
 
-/// Mean angular speed until each of the stamps; nothing where the truth is unknown.
+/// Mean angular speed until each of the stamps; nothing where the ground truth is unknown.
 std::vector<std::optional<double>> speeds_degps(const Trajectory& truth,
                                                 std::span<const std::int64_t> stamps_ns) {
   std::vector<std::optional<double>> speeds(stamps_ns.size());

@@ -33,7 +33,7 @@ struct CriterionMeasurement {
   std::string note;  ///< the worst recording; runs without the number; empty if there is nothing to say
 };
 
-/// The split of the criterion decides; the other one stands beside it.
+/// The split of the criterion decides; the other one is next to it.
 struct CriterionResult {
   suites::Criterion criterion;
   CriterionMeasurement decided;

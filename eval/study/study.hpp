@@ -29,7 +29,7 @@ struct StudyRun {
 struct Study {
   /// The variant that AIE on common pixels is measured against, and whose frames say how far patches moved.
   [[nodiscard]] const std::string& reference() const { return variants.front(); }
-  /// The variant that the reference stands beside where no other one is asked for; empty if there is none.
+  /// The variant that the reference is next to where no other one is requested; empty if there is none.
   [[nodiscard]] std::string partner() const { return variants.size() > 1 ? variants[1] : std::string(); }
 
   std::vector<std::string> variants;  ///< as the suite names them: the reference, its partner, and more

@@ -17,7 +17,7 @@ struct TableLook {
   bool heading_on_one_line = false;  ///< the first line cannot be broken
 };
 
-/// Columns that stand beside each other, and how wide each is.
+/// Columns that are next to each other, and how wide each is.
 struct TableBlock {
   std::vector<std::size_t> columns;
   std::vector<std::size_t> widths;

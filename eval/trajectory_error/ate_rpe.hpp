@@ -32,7 +32,7 @@ struct Alignment {
 struct AteOptions {
   double max_difference_s = 0.02;  ///< of associated stamps
   double offset_s = 0;             ///< added to the estimate's stamps
-  /// Stamps at which an estimate was asked for; those with ground truth are the possible pairs. Empty: the
+  /// Stamps at which an estimate was requested; those with ground truth are the possible pairs. Empty: the
   /// estimate's.
   std::span<const std::int64_t> expected_ns = {};
 };
@@ -91,7 +91,7 @@ struct RpeResult {
   double delta = 0;
   DeltaUnit unit = DeltaUnit::seconds;
   std::size_t pairs = 0;
-  std::size_t possible = 0;     ///< pairs of the estimate, before ground truth was asked for
+  std::size_t possible = 0;     ///< pairs of the estimate, before ground truth was requested
   std::size_t with_itself = 0;  ///< pairs of a pose with itself that the script has and that are left out
   double coverage = 0;
   double max_difference_s = 0;

@@ -36,7 +36,7 @@ struct MotionListing {
   bool needed = false;                               ///< somebody wants to see each error: more are refused
   std::size_t most_compared = std::size_t{1} << 28;  ///< pairs of poses to look at, which takes minutes
 };
-/// Error usage: so many pairs of poses would have to be looked at.
+/// Error usage: so many pairs of poses would have to be checked.
 [[nodiscard]] Result<void> check_compared(const MotionListing& listing, std::size_t compared);
 /// Error usage: a list is needed and would be too long.
 [[nodiscard]] Result<void> check_listing(const MotionListing& listing, std::size_t motions);

@@ -17,7 +17,7 @@ namespace {
 constexpr const metrics::StatePart& kOrientationPart = metrics::kStateParts[0];
 constexpr const metrics::StatePart& kPositionPart = metrics::kStateParts[1];
 
-/// Of a pose and the truth in the estimate's world, positions of both relative to the same point.
+/// Of a pose and the ground truth in the estimate's world, positions of both relative to the same point.
 std::optional<PoseConsistencyRow> nees_row(const SE3& truth, const SE3& pose, std::int64_t timestamp_ns,
                                            const trajectory_files::PoseCovariance& covariance) {
   PoseConsistencyRow row;

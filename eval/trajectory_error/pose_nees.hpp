@@ -1,5 +1,5 @@
-// Do the covariances that come with a trajectory tell the truth about its errors? NEES and 3 sigma of poses
-// from anywhere (Bar-Shalom, Li and Kirubarajan 2001, 5.4.2; Zhang and Scaramuzza 2018).
+// Do the covariances that come with a trajectory tell the ground truth about its errors? NEES and 3 sigma of
+// poses from anywhere (Bar-Shalom, Li and Kirubarajan 2001, 5.4.2; Zhang and Scaramuzza 2018).
 #pragma once
 
 #include <cstddef>
@@ -43,9 +43,9 @@ struct PoseConsistency {
   PartConsistency position;
 };
 
-/// The truth is moved into the world of the estimate, whose covariances are of that world, by the inverse of
-/// what aligns the estimate. Errors are truth (-) estimate: of the orientation on the right, in the body's
-/// frame; of the position in the estimate's world.
+/// The ground truth is moved into the world of the estimate, whose covariances are of that world, by the
+/// inverse of what aligns the estimate. Errors are truth (-) estimate: of the orientation on the right, in
+/// the body's frame; of the position in the estimate's world.
 ///
 /// Errors: usage for an estimate without covariances, or an alignment with scale; those of pair_up() and
 /// align(); data_corrupt where every covariance is singular.

@@ -65,7 +65,7 @@ struct TrajectoryRequest {
   bool fit_offset = false;  ///< absolute errors: also with a fitted offset of the body, see fitted_offset()
 };
 
-/// What the protocol does if nothing else is asked for. Error usage: it has no such metric.
+/// What the protocol does if nothing else is requested. Error usage: it has no such metric.
 [[nodiscard]] Result<TrajectoryRequest> request_for(Protocol protocol, TrajectoryMetric metric);
 
 }  // namespace fusebench::trajectory_error

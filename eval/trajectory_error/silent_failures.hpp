@@ -35,8 +35,8 @@ struct JudgedPose {
   bool silent = false;  ///< beyond the limits
 };
 
-/// The poses that silent_failures() judges, in order: all of the estimate for which the truth is known, but
-/// the first of them.
+/// The poses that silent_failures() judges, in order: all of the estimate for which the ground truth is
+/// known, but the first of them.
 [[nodiscard]] std::vector<JudgedPose> judged_poses(const Trajectory& ground_truth, const Trajectory& estimate,
                                                    const SilentFailureLimits& limits = {});
 

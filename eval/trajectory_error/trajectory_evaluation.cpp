@@ -184,7 +184,7 @@ metrics::Statistics over(std::size_t segments, Value&& value) {
 }
 
 /// Errors of segments by their lengths. ETH3D divides by the path of each segment, the others by the length
-/// that was asked for.
+/// that was requested.
 struct RelativeErrors {
   std::vector<double> translation_percent;
   std::vector<double> rotation_deg_per_m;

@@ -60,7 +60,7 @@ struct TrajectoryEvaluation {
   /// Empty unless request.keep_poses. Of TUM's relative errors: all poses, the estimate's scaled.
   ComparedPoses compared;
   std::vector<SegmentRow> segments;           ///< where segments are what is compared
-  std::optional<FittedOffset> fitted_offset;  ///< where it was asked for; its errors are the second series
+  std::optional<FittedOffset> fitted_offset;  ///< where it was requested; its errors are the second series
 };
 
 /// The same errors in another unit of the kind: mm, cm or km of metres, degrees of radians or the other way
@@ -68,7 +68,7 @@ struct TrajectoryEvaluation {
 [[nodiscard]] Result<void> change_unit(ErrorSeries& series, const std::string& unit);
 
 /// Errors: configuration for deltas that make no sense, data_corrupt for trajectories that do not match or do
-/// not determine the alignment or an offset that was asked for, and where no motion is left.
+/// not determine the alignment or an offset that was requested, and where no motion is left.
 [[nodiscard]] Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
                                                     const TrajectoryRequest& request);
 

@@ -39,7 +39,7 @@ struct AssociationOptions {
 struct TrajectoryPair {
   Trajectory reference;
   Trajectory estimate;
-  std::size_t possible = 0;  ///< poses of the shorter side, or stamps that were asked for
+  std::size_t possible = 0;  ///< poses of the shorter side, or stamps that were requested
   AssociationOptions options;
 
   [[nodiscard]] std::size_t size() const { return reference.size(); }

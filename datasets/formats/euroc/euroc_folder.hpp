@@ -18,8 +18,8 @@ namespace fusebench::formats::euroc {
 /// sensor.yaml, or with cam0's T_BS and intrinsics, is registered to cam0; depth_units_per_metre in it (no
 /// key of EuRoC) is the value of one metre, 1000 without. imu0/data.csv is used if it is there, and
 /// state_groundtruth_estimate0/data.csv (of the body; the first eight of its columns, or all 17) is the
-/// ground truth, and the truth of states where the IMU is the body. cam1 and others are left alone. Errors:
-/// configuration, data_missing (among them no depth0), data_corrupt.
+/// ground truth, and the ground truth of states where the IMU is the body. cam1 and others are left alone.
+/// Errors: configuration, data_missing (among them no depth0), data_corrupt.
 [[nodiscard]] Result<recording::Recording> open_euroc(const std::filesystem::path& folder,
                                                       const recording::ReadOptions& options);
 

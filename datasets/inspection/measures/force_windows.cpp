@@ -53,7 +53,7 @@ std::optional<ImuPose> imu_pose_at(const TruePath& path, std::int64_t imu_ns) {
   return ImuPose{pose->rotation_matrix() * path.rotation_camera_imu, *pose * path.imu_in_camera_m};
 }
 
-/// Central difference over 0.1 s: shorter ones show the jitter of the truth.
+/// Central difference over 0.1 s: shorter ones show the jitter of the ground truth.
 std::optional<Vector3d> imu_velocity_at(const TruePath& path, std::int64_t imu_ns) {
   const auto before = imu_pose_at(path, imu_ns - kHalfStep_ns),
              after = imu_pose_at(path, imu_ns + kHalfStep_ns);

@@ -27,7 +27,7 @@ bool is_smooth(const DepthImage& depth_m, int x, int y) {
 
 namespace {
 
-/// A camera pose in the truth's world under a reading.
+/// A camera pose in the ground truth's world under a reading.
 std::optional<SE3> pose_at(const Trajectory& truth, std::int64_t time_ns, std::int64_t gap_ns,
                            const Reading& reading) {
   const auto pose = trajectory::interpolate_pose(truth, time_ns + reading.truth_shift_ns, gap_ns);

@@ -13,12 +13,12 @@ namespace fusebench::inspection::measures {
 /// A way to read a recording: how poses, times, depths, colours and intrinsics are to be taken. The default
 /// is as they are.
 struct Reading {
-  std::function<SE3(const SE3&)> pose;  ///< what to do to each pose of the truth; empty: nothing
+  std::function<SE3(const SE3&)> pose;  ///< what to do to each pose of the ground truth; empty: nothing
   double depth_scale = 1;               ///< factor of all depths
   bool depth_along_ray = false;         ///< depth is the distance to the camera's centre, not its z component
   double focal_scale = 1;               ///< factor of fx and fy
   double image_scale = 1;               ///< factor of fx, fy, cx and cy: of the image that they belong to
-  std::int64_t truth_shift_ns = 0;      ///< the truth is looked up this much later
+  std::int64_t truth_shift_ns = 0;      ///< the ground truth is looked up this much later
   std::int64_t depth_shift_ns = 0;      ///< depth images were taken this much later
   bool color_mirrored_x = false;        ///< column x of colour is column width - 1 - x of the scene
   bool color_mirrored_y = false;        ///< the same of rows; both: colour is upside down
@@ -59,7 +59,7 @@ struct WarpResidual {
                                       RgbdFrame&& to_frame);
 
 /// Residuals under a reading. Depth is compared at the instants of the depth images, and intensity at those
-/// of the colour images. Nothing if the truth does not cover the pair.
+/// of the colour images. Nothing if the ground truth does not cover the pair.
 [[nodiscard]] std::optional<WarpResidual> warp(const WarpPair& pair, const PinholeCamera& camera,
                                                const Trajectory& truth, std::int64_t truth_gap_ns,
                                                const Reading& reading);
