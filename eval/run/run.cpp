@@ -111,8 +111,11 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
-  if (auto refused = preparation::refusal(checked, run.recording.name))
+  if (auto refused = preparation::refusal(checked, run.recording.name)) {
+    refused->hint += refused->hint.empty() ? "" : "; ";
+    refused->hint += "--prepare off runs all the same";
     return tl::unexpected(*std::move(refused));
+  }
   for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);

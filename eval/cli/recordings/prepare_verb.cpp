@@ -52,7 +52,7 @@ Result<int> run(const PrepareVerbOptions& options) {
   const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
-  return 0;
+  return preparation::refusal(sensors, recording->name) ? exit_code(ErrorCode::data_corrupt) : 0;
 }
 
 }  // namespace
