@@ -36,7 +36,7 @@ std::size_t index_of(const Matrix3d& permutation) {
 /// ...".
 std::string axes_text(const Matrix3d& axes, double ratio, bool is_unique) {
   return fmt::format(
-      "{}: its (x, y, z) hold {} of the axes that T_imu_camera describes (residuals {:.2f} times those of "
+      "{}: its (x, y, z) hold {} of the axes that T_imu_color describes (residuals {:.2f} times those of "
       "the "
       "axes as calibrated{})",
       axes.determinant() < 0 ? "swapped and mirrored" : "swapped", measures::permutation_text(axes), ratio,
@@ -103,7 +103,7 @@ void report_rotation(const ImuAlignment& a, Inspection& out) {
     return;
   out.add(is_far ? "imu-axes-swapped" : "extrinsic-rotated",
           error_rad >= kRotationError_rad ? Severity::error : Severity::warning,
-          fmt::format("the rotation of T_imu_camera is {:.1f} deg (+- {:.1f}) from the one that fits the "
+          fmt::format("the rotation of T_imu_color is {:.1f} deg (+- {:.1f}) from the one that fits the "
                       "turns of the {} best",
                       kDegreesPerRadian * error_rad, kDegreesPerRadian * a.rotation_sigma_rad, a.source),
           fmt::format("the best rotation for T_imu_color in [imu] of calibration.toml is {}",

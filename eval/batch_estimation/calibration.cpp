@@ -1,6 +1,7 @@
 #include "eval/batch_estimation/calibration.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -257,6 +258,27 @@ Result<CameraImuCalibration> calibrate(const recording::Recording& recording, co
     result.rounds.push_back({exaggeration(round), result.T_imu_camera, result.time_offset_s, guess.timing_s});
   }
   return result;
+}
+
+Result<void> check_fit(const CameraImuCalibration& calibration, const recording::Recording& recording) {
+  constexpr double kMostVariance = 100;
+  std::vector<std::string> reasons;
+  if (!calibration.converged)
+    reasons.push_back(fmt::format("still moving after {} rounds", calibration.rounds.size()));
+  if (2 * calibration.tracked < calibration.frames)
+    reasons.push_back(fmt::format("{} of {} frames were tracked (required: half or more)",
+                                  calibration.tracked, calibration.frames));
+  if (!(calibration.variance_factor <= kMostVariance))
+    reasons.push_back(
+        fmt::format("image residuals have {:.0f} times the expected variance (allowed: up to {:g})",
+                    calibration.variance_factor, kMostVariance));
+  if (reasons.empty()) return {};
+  return fail(
+      ErrorCode::run_failed,
+      fmt::format("recording '{}' does not determine a calibration: {}", recording.name,
+                  fmt::join(reasons, "; ")),
+      "pass more --rounds, or --frames A:B with frames that are tracked; docs/calibration.md describes "
+      "how to move");
 }
 
 calibration::RigCalibration calibrated_rig(const recording::Recording& recording,

@@ -89,6 +89,11 @@ struct CameraImuCalibration {
                                                      const CalibrationOptions& options,
                                                      const Workers& workers, const run::RunControl& control);
 
+/// Error run_failed: the rounds did not converge, fewer than half of the frames were tracked, or the variance
+/// of the image residuals is more than 100 times that which the filter claims.
+[[nodiscard]] Result<void> check_fit(const CameraImuCalibration& calibration,
+                                     const recording::Recording& recording);
+
 /// What the recording's files said with the new extrinsic, offset, timing and scales, ready for a file:
 /// read-outs below 0 are 0. The recording as it was opened.
 [[nodiscard]] calibration::RigCalibration calibrated_rig(const recording::Recording& recording,

@@ -187,8 +187,7 @@ std::optional<Error> refusal(const SensorCheck& check, const std::string& record
     hints += fmt::format("{}{}", hints.empty() || finding.hint.empty() ? "" : "; ", finding.hint);
   }
   if (messages.empty()) return std::nullopt;
-  return Error{ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", recording, messages),
-               fmt::format("{}{}--prepare off runs all the same", hints, hints.empty() ? "" : "; ")};
+  return Error{ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", recording, messages), hints};
 }
 
 bool makes_results_invalid(const Finding& finding) {

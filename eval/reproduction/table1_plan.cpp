@@ -20,21 +20,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The recordings that are there or can be made; the others with their reasons in `absent`.
+/// The suite in which recordings that neither exist nor can be simulated have a source, so that a plan leaves
+/// them out; `absent` lists these with their reasons.
 suites::Suite available(const suites::Suite& recordings, const engine::BatchOptions& options,
                         std::vector<std::string>& absent) {
   suites::Suite suite = recordings;
-  std::erase_if(suite.recordings, [&](const suites::SuiteRecording& recording) {
-    if (suites::find_recordings(recording.name, options.data)) return false;
+  for (suites::SuiteRecording& recording : suite.recordings) {
+    if (suites::find_recordings(recording.name, options.data)) continue;
     absent.push_back(recording.name);
-    return true;
-  });
+    recording.source = "put it under --data";
+  }
   std::erase_if(suite.simulations, [&](const suites::SuiteSimulation& simulation) {
     const fs::path& path = simulation.request.trajectory;
     std::error_code ignored;
     if (path.empty() || fs::is_regular_file(options.data / path, ignored)) return false;
     const std::string reason = fmt::format("{} (needs {})", simulation.group, path.string());
     if (std::ranges::find(absent, reason) == absent.end()) absent.push_back(reason);
+    suite.recordings.push_back({.name = simulation.name,
+                                .group = simulation.group,
+                                .source = fmt::format("put {} under --data", path.string())});
     return true;
   });
   return suite;

@@ -125,8 +125,11 @@ Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   const bool has_own_imu = run.recording.imu_source == recording::ImuSource::recorded;
   if (!run.spec.prepare || (!is_measured && !has_own_imu)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
-  if (auto refused = preparation::refusal(checked, run.recording.name))
+  if (auto refused = preparation::refusal(checked, run.recording.name)) {
+    refused->hint += refused->hint.empty() ? "" : "; ";
+    refused->hint += "--prepare off runs all the same";
     return tl::unexpected(*std::move(refused));
+  }
   for (const inspection::Finding& finding : checked.findings)
     run.recording.warnings.push_back(finding.message);
   if (!is_measured) return {};

@@ -114,6 +114,7 @@ bool wants_imu(const RunSpec& spec) {
 std::string_view to_string(KeptFiles kept) { return kept == KeptFiles::all ? "all" : "small"; }
 
 Result<FrameWindow> parse_window(const std::string& text) {
+  if (text.starts_with(':')) return parse_window("0" + text);
   FrameWindow window;
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, window.begin);
@@ -122,8 +123,8 @@ Result<FrameWindow> parse_window(const std::string& text) {
   const auto second = colon && !open ? std::from_chars(first.ptr + 1, end, window.end.emplace()) : first;
   if (!colon || second.ec != std::errc{} || (!open && second.ptr != end) ||
       (window.end && window.begin >= *window.end)) {
-    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B, or A:)", text),
-                "A:B takes frames A to B-1, A: all from A on");
+    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B, A: or :B)", text),
+                "A:B takes frames A to B-1, A: all from A on, :B the first B");
   }
   return window;
 }

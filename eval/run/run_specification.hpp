@@ -27,7 +27,7 @@ struct FrameWindow {
   std::size_t begin = 0;
   std::optional<std::size_t> end;
 };
-/// "A:B" to frames A to B-1, "A:" to all from A on. Error usage.
+/// "A:B" to frames A to B-1, "A:" to all from A on, ":B" to the first B. Error usage.
 [[nodiscard]] Result<FrameWindow> parse_window(const std::string& text);
 [[nodiscard]] std::string to_string(const FrameWindow& window);  ///< "A:B" or "A:"
 

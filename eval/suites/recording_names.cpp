@@ -44,7 +44,10 @@ tl::unexpected<Error> not_there(const calibration::CatalogueEntry& entry, const 
 /// The recording under `data` whose folder has that name, or an error that names the nearest.
 Result<fs::path> find_folder_named(const std::string& name, const fs::path& data) {
   std::vector<std::string> present;
-  if (const auto folders = recordings_under(data)) {
+  const auto folders = recordings_under(data);
+  std::error_code ignored;
+  if (!fs::is_directory(data, ignored)) return tl::unexpected(folders.error());
+  if (folders) {
     for (const fs::path& folder : *folders) {
       if (folder.filename() == name) return folder;
       present.push_back(folder.filename().string());
@@ -97,7 +100,10 @@ Result<std::vector<fs::path>> find_recordings(const std::string& name, const fs:
   }
   const std::string beginning = name.substr(0, name.size() - 1);
   std::vector<fs::path> found;
-  if (const auto folders = recordings_under(data)) {
+  const auto folders = recordings_under(data);
+  std::error_code ignored;
+  if (!data.empty() && !fs::is_directory(data, ignored)) return tl::unexpected(folders.error());
+  if (folders) {
     for (const fs::path& folder : *folders) {
       if (folder.filename().string().starts_with(beginning)) found.push_back(folder);
     }

@@ -94,10 +94,10 @@ Result<PlannedRecordings> planned_recordings(const Suite& suite, const Recording
     planned->present.push_back(std::move(*recording));
   }
   if (planned->present.empty() && !planned->absent.empty()) {
-    return fail(
-        ErrorCode::data_missing,
-        fmt::format("suite '{}': none of its recordings is under '{}'", suite.name, choice.data.string()),
-        fmt::format("the suite's file says where to get each, for example {}", planned->absent.front()));
+    return fail(ErrorCode::data_missing,
+                fmt::format("suite '{}': none of its recordings{} is under '{}'", suite.name,
+                            choice.only.empty() ? "" : " that --only keeps", choice.data.string()),
+                "for example " + planned->absent.front());
   }
   // Runs go by the names of recordings: two of one name would overwrite each other's.
   std::set<std::string> names;

@@ -135,6 +135,8 @@ check_bad_data() {
   grep -q '1 of 2 runs ok' stderr || complain "suite with bad data: the good run is not counted"
   "$binary" table runs >stdout 2>stderr || complain "table of a suite with bad data"
   grep -q '1305031229.628753.png' stdout || complain "the table does not say why the run failed"
+  "$binary" table runs --format latex --metrics ate,rpe >stdout 2>stderr || complain "table --metrics by short names"
+  refused "a ranking by a number that no run has" 3 'no run has mesh' 'hint:--by' -- best runs --by mesh
 }
 
 # A grey PNG of 1x1 pixels with 16 bits, byte by byte.
@@ -384,7 +386,7 @@ check_recordings() {
   grep -q 'verdict .* is determined' stdout || complain "calibrate --depth-camera has no verdict"
   grep -q '^depth.toml: written, in place of a calibration (depth 30 px too low)' stderr ||
     complain "calibrate --depth-camera does not say what it replaced"
-  "$binary" run fr1_rpy --data data --calibration depth.toml --variant no-imu --frames 0:2 --out out >stdout 2>stderr ||
+  "$binary" run fr1_rpy --data data --calibration depth.toml --variant no-imu --frames :2 --out out >stdout 2>stderr ||
     complain "a run with the fitted depth camera: exit code $?"
   "$binary" inspect fr1_rpy --data data --frames 0:3 --json >stdout 2>stderr || complain "inspect of three frames: exit code $?"
   grep -q '"registration": null' stdout || complain "inspect --json: what was not measured is not null"
@@ -393,6 +395,14 @@ check_recordings() {
   prints 'verdict +not determined' "a fit that is only shown" calibrate fr1_rpy --data data --depth-camera
   refused "too few frames for a depth camera" 4 'too few edges' 'hint:near and far' -- \
     calibrate fr1_rpy --data data --depth-camera --frames 0:3
+
+  # An IMU in other units is refused before a calibration; `prepare` exits as `inspect` does.
+  checks=$((checks + 1))
+  "$binary" simulate --preset fast --format tum --duration 0.7 --size 320x240 --blur-samples 1 --in-motion --out in_g >/dev/null 2>&1
+  awk -F, -v OFS=, 'NR > 1 {for (i = 5; i <= 7; i++) $i /= 9.81} 1' in_g/imu.csv >imu.csv && mv imu.csv in_g/imu.csv
+  refused "a calibration by an IMU in units of gravity" 3 'units of gravity' -- calibrate in_g --out out
+  "$binary" prepare in_g >stdout 2>stderr
+  [[ $? == 3 ]] || complain "prepare of an IMU in units of gravity does not exit with 3"
 
   # Suites go by name from any folder; of two values for one key either counts.
   checks=$((checks + 1))
@@ -951,6 +961,10 @@ check_evo() {
   refused "an unknown format" 2 "trajectory format 'tumm'" -- eval ape tumm gt.txt est.txt
   refused "five files" 2 'two files are required, GT and EST; 5 are given' -- eval ape a b c d e
   refused "a picture that is none" 2 'plot.png: plots are drawn as .svg or .pdf' 'hint:PNG' -- eval ape gt.txt est.txt --plot plot.png
+  refused "TUM's flag" 2 "TUM's scripts" 'hint:--t_max_diff' -- eval ate gt.txt est.txt --max_difference 0.02
+  refused "TUM's flag of rpe" 2 "TUM's scripts" 'hint:--protocol tum' -- eval rpe gt.txt est.txt --fixed_delta
+  refused "a LaTeX table" 2 'only CSV' 'hint:--format latex' -- eval traj tum est.txt --save_table out.tex
+  refused "a LaTeX table of results" 2 'only CSV' -- eval res runs/ape.zip --save_table out.tex
   refused "no counterpart" 2 "evo's --rerun has no counterpart" 'hint:--save_plot' -- eval ape tum gt.txt est.txt --rerun
   refused "a misspelt option" 2 'eval ate. has no option --alignn \(nearest: --align\)' -- eval ape gt.txt est.txt --alignn
   refused "an unknown alignment" 2 "no alignment 'foo' .allowed none, se3, " 'hint:without a mode' -- eval ape --align foo gt.txt est.txt

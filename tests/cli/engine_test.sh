@@ -230,6 +230,12 @@ check_verbs() {
   says 0 'no-imu iekf.max_iterations=[0-9]+ tsdf.voxel_m=0.01[0-9]* ' list runs undisturbed
   says 0 "$runs runs" report undisturbed --out sweep.html
   grep -q 'Best configurations' sweep.html || complain "the report says nothing of the sweep"
+  # Where `bench` writes without --out and --simulated.
+  mkdir -p usual/results/runs
+  cp -r undisturbed usual/results/runs
+  cp -r simulated usual/results
+  (cd usual && "$binary" report results/runs/undisturbed --out sweep.html) >stdout 2>stderr || complain "report of the usual folder"
+  grep -q 'no images of the recording' stderr && complain "report: a simulated recording is not found"
 
   # Two folders, made apart, become one.
   says 0 "$runs of $runs runs ok" "${suite[@]}" --out left --set iekf.max_lost_frames=7

@@ -30,7 +30,8 @@ void add_json_flag(CLI::App& verb, bool& json);                       ///< --jso
                                                                const std::filesystem::path& file,
                                                                const std::vector<std::string>& sets);
 
-/// "A:B" to frames A to B-1, "A:" to all from A on; nothing for an empty text. Error usage.
+/// "A:B" to frames A to B-1, "A:" to all from A on, ":B" to the first B; nothing for an empty text. Error
+/// usage.
 [[nodiscard]] Result<std::optional<run::FrameWindow>> parse_frames(const std::string& text);
 
 }  // namespace fusebench::cli::console

@@ -19,6 +19,7 @@
 #include "eval/cli/recordings/calibration_output.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/inspection_report/depth_camera_report.hpp"
+#include "eval/preparation/sensor_check.hpp"
 #include "eval/run/run.hpp"
 
 namespace fusebench::cli::recordings {
@@ -112,7 +113,11 @@ Result<int> run(const CalibrateVerbOptions& options) {
                 "a calibration requires recorded inertial samples; without --out the result is only printed");
   }
   console::print_warnings(recording.warnings);
-  console::Progress progress("calibrating " + recording.name);
+  const Workers workers(options.request.threads);
+  console::Progress progress("checking the IMU of " + recording.name);
+  if (auto refused = preparation::refusal(preparation::inspected_sensors(recording, workers), recording.name))
+    return tl::unexpected(*std::move(refused));
+  progress.say("calibrating " + recording.name);
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { progress.show(frame, total); }};
   const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
@@ -120,15 +125,15 @@ Result<int> run(const CalibrateVerbOptions& options) {
                                                  .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
                                                  .scale_prior = 0.01 * options.scale_prior_percent,
                                                  .max_rounds = options.rounds};
-  const Workers workers(options.request.threads);
   const auto calibration =
       batch_estimation::calibrate(recording, task->config.values(), how, workers, control);
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto written =
-      write_calibration(options.out, batch_estimation::calibrated_rig(recording, *calibration));
-  if (!written) return tl::unexpected(written.error());
+  const auto done = batch_estimation::check_fit(*calibration, recording).and_then([&] {
+    return write_calibration(options.out, batch_estimation::calibrated_rig(recording, *calibration));
+  });
   console::print_output(options.json ? batch_estimation::to_json(*calibration, recording)
                                      : batch_estimation::to_text(*calibration, recording));
+  if (!done) return tl::unexpected(done.error());
   return 0;
 }
 

@@ -53,7 +53,7 @@ Result<int> run(const PrepareVerbOptions& options) {
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
   console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
                                      : preparation::to_text(*prepared, sensors, *recording));
-  return 0;
+  return preparation::refusal(sensors, recording->name) ? exit_code(ErrorCode::data_corrupt) : 0;
 }
 
 }  // namespace

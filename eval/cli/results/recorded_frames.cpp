@@ -17,7 +17,8 @@ namespace fusebench::cli::results {
 
 namespace {
 
-/// In the folder of recordings, else where an engine writes simulated ones next to its runs.
+/// In the folder of recordings, else where an engine writes simulated ones: in `simulated` next to the runs
+/// or above (results/runs/SUITE), or in its usual folder in the working folder.
 Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorded,
                                         const std::filesystem::path& data,
                                         const std::filesystem::path& runs) {
@@ -25,10 +26,14 @@ Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorde
   if (given || recorded.data != "simulated") return given;
   std::error_code ignored;
   const std::filesystem::path root = std::filesystem::weakly_canonical(runs, ignored);
-  const std::filesystem::path all_simulated = root.parent_path() / "simulated";
-  const std::filesystem::path simulated = all_simulated / recorded.name;
-  // Runs may lie in a folder of that name themselves.
-  if (all_simulated != root && std::filesystem::is_directory(simulated, ignored)) return simulated;
+  const std::filesystem::path parent = root.parent_path();
+  for (const std::filesystem::path& all_simulated :
+       {parent / "simulated", parent.parent_path() / "simulated",
+        std::filesystem::absolute("results/simulated", ignored)}) {
+    // Runs may lie in a folder of that name themselves.
+    if (all_simulated != root && std::filesystem::is_directory(all_simulated / recorded.name, ignored))
+      return all_simulated / recorded.name;
+  }
   return given;
 }
 

@@ -42,7 +42,7 @@ Result<int> pivot(const std::vector<run_files::FoundRun>& runs, const TableOptio
   return 0;
 }
 
-Result<int> table(const TableOptions& options) {
+Result<int> table(TableOptions options) {
   const auto format = tables::parse_table_format(options.json ? "json" : options.format);
   if (!format) return tl::unexpected(format.error());
   const auto runs = run_files::find_runs(options.runs);
@@ -58,6 +58,8 @@ Result<int> table(const TableOptions& options) {
     if (!options.pivot.empty()) return pivot(*runs, options, *format, width);
     if (!options.layout.metrics.empty() && *format != tables::TableFormat::latex)
       return fail(ErrorCode::usage, "--metrics requires --format latex");
+    for (std::string& name : options.layout.metrics)
+      if (const auto metric = registry::find_ranking_metric(name)) name = (*metric)->key;
     if (auto known = tables::check_latex_metrics(options.layout.metrics); !known)
       return tl::unexpected(known.error());
     console::print_output(tables::render_table(tables::table_of(*runs), *format, options.layout, width));
@@ -98,7 +100,8 @@ console::Verb add_table_verb(CLI::App& app) {
       ->excludes("--paper")
       ->excludes("--systems");
   verb->add_option("--metrics", options->layout.metrics,
-                   "LaTeX, table of runs: the numbers that it has, by their keys (`fusebench list metrics`)")
+                   "LaTeX, table of runs: the numbers that it has, by the names of --pivot or by their keys "
+                   "(`fusebench list metrics`)")
       ->type_name("KEY,...")
       ->delimiter(',')
       ->excludes("--paper")

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
@@ -39,6 +41,9 @@ Result<int> best(const BestOptions& options) {
   if (!rows) return tl::unexpected(rows.error());
   const auto table = aggregate::best_configurations(*rows, request);
   if (!table) return tl::unexpected(table.error());
+  if (table->groups.empty())
+    return fail(ErrorCode::data_missing, fmt::format("no run has {}", request.metric->key),
+                "rank by another number, e.g. --by aie or --by cpu");
   const std::size_t width = console::table_width(options.width, options.named_format->count() > 0);
   console::print_output(aggregate::render_best(*table, *format, width));
   return 0;

@@ -26,6 +26,7 @@ struct ResultOptions {
 };
 
 Result<int> run_res(const ResultOptions& options) {
+  if (auto csv = check_table_file(options.save_table); !csv) return tl::unexpected(csv.error());
   const auto plots = plot_files(options.plot);
   if (!plots) return tl::unexpected(plots.error());
   Transcript transcript(options.transcript);

@@ -35,6 +35,7 @@ Result<int> run_traj(const CLI::App& verb, BundleOptions options) {
     return fail(
         ErrorCode::usage, "no trajectory is given",
         "`fusebench eval traj FILE...`, with an optional format first: tum, kitti, euroc, log or openvins");
+  if (auto csv = check_table_file(options.save_table); !csv) return tl::unexpected(csv.error());
   const auto plots = plot_files(options.plot);
   if (!plots) return tl::unexpected(plots.error());
   Transcript transcript(options.transcript);

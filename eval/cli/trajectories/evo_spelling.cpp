@@ -45,6 +45,15 @@ constexpr std::array kWithoutCounterpart{
                        "--save_as_tum writes text, which `evo_traj tum` writes as a bag"},
 };
 
+/// Options of TUM's evaluate_ate.py and evaluate_rpe.py, and what to use instead.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kOfTumScripts = {
+    {{"--max_difference", "use --t_max_diff"},
+     {"--offset", "use --t_offset"},
+     {"--fixed_delta", "it is the default of --protocol tum; --delta sets its length"},
+     {"--scale",
+      "--scale of TUM's scripts multiplies the positions of the estimate: write them in metres; "
+      "--correct_scale fits the scale"}}};
+
 bool is_picture(std::string_view argument) {
   constexpr std::array<std::string_view, 6> kEndings = {".svg", ".pdf", ".png", ".jpg", ".jpeg", ".eps"};
   return std::ranges::find(kEndings, std::filesystem::path(argument).extension().string()) != kEndings.end();
@@ -82,6 +91,12 @@ Result<void> check_counterpart(std::string_view argument, std::string_view verb)
     if (name != entry.flag || (!entry.verb.empty() && entry.verb != verb)) continue;
     return fail(ErrorCode::usage, fmt::format("evo's {} has no counterpart here", entry.flag),
                 std::string(entry.instead));
+  }
+  for (const auto& [flag, instead] : kOfTumScripts) {
+    if (name == flag && (verb == "ate" || verb == "rpe"))
+      return fail(ErrorCode::usage,
+                  fmt::format("{} is an option of TUM's scripts, not of `eval {}`", flag, verb),
+                  std::string(instead));
   }
   return {};
 }

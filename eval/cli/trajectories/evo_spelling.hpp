@@ -15,8 +15,8 @@ namespace fusebench::cli::trajectories {
 /// --plot and -p draw into a file of the usual name unless the name of a picture follows. Arguments of other
 /// verbs stay as they are.
 ///
-/// Error usage: a bag (bag, bag2, mcap), a flag of evo's that has no counterpart here, with what to do
-/// instead, or a word behind --align that is neither a mode nor a format nor a file.
+/// Error usage: a bag (bag, bag2, mcap), a flag of evo's that has no counterpart here or one of TUM's
+/// scripts, with what to do instead, or a word behind --align that is neither a mode nor a format nor a file.
 [[nodiscard]] Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> arguments);
 
 /// What evo calls a verb of `eval`, if that is another name; else empty.

@@ -37,4 +37,11 @@ Result<std::vector<metric_reports::PlotFile>> plot_files(const PlotOptions& opti
   return files;
 }
 
+Result<void> check_table_file(const std::filesystem::path& file) {
+  if (file.empty() || file.extension() == ".csv") return {};
+  return fail(ErrorCode::usage,
+              fmt::format("--save_table {}: only CSV is written (allowed: FILE.csv)", file.string()),
+              "`fusebench table RUNS --format latex` writes the table of a folder of runs for LaTeX");
+}
+
 }  // namespace fusebench::cli::trajectories

@@ -32,6 +32,9 @@ void add_plot_mode_option(CLI::App& verb, std::string& mode);
 /// The files that are to be drawn, none or more. Error usage: an ending that none is drawn as.
 [[nodiscard]] Result<std::vector<metric_reports::PlotFile>> plot_files(const PlotOptions& options);
 
+/// Error usage: a file of --save_table whose name does not end with .csv. An empty name is allowed.
+[[nodiscard]] Result<void> check_table_file(const std::filesystem::path& file);
+
 /// Draws script_of(file) into each and notes it. Errors as draw().
 template <typename ScriptOf>
 Result<void> draw_all(const std::vector<metric_reports::PlotFile>& files, Transcript& transcript,

@@ -164,6 +164,24 @@ TEST(Calibration, SaysThatAnImuIsMadeOfTheTruth) {
   EXPECT_NE(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
 }
 
+TEST(Calibration, AHopelessFitIsAnErrorWithItsReasons) {
+  const Recording recording;
+  CameraImuCalibration found;
+  found.frames = 60;
+  found.tracked = 30;
+  found.converged = true;
+  EXPECT_TRUE(check_fit(found, recording));
+  found.tracked = 18;
+  found.converged = false;
+  found.rounds.resize(4);
+  found.variance_factor = 30747;
+  const auto refused = check_fit(found, recording);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::run_failed);
+  for (const char* reason : {"still moving after 4 rounds", "18 of 60 frames", "30747 times"})
+    EXPECT_NE(refused.error().message.find(reason), std::string::npos) << refused.error().message;
+}
+
 TEST(Calibration, WritesAFileThatReadsBack) {
   const testing::SimulatedRun run = testing::simulate(2);
   const Recording recording = recording_of(run);

@@ -79,7 +79,7 @@ TEST(SensorCheck, ARefusalHasAllReasonsAndRemedies) {
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->code, ErrorCode::data_corrupt);
   EXPECT_EQ(refused->message, "the IMU of 'desk': the values are in g; its sign is wrong");
-  EXPECT_EQ(refused->hint, "multiply them by 9.80665; negate the values; --prepare off runs all the same");
+  EXPECT_EQ(refused->hint, "multiply them by 9.80665; negate the values");
   check.findings = {{"imu-time-offset", Severity::error, "late", "add 0.02"}};
   EXPECT_FALSE(refusal(check, "desk"));
 }

@@ -136,6 +136,15 @@ TEST(Table1, WithoutDataEveryRowOfThePaperHasASpeedAndEachRunIsPlannedOnce) {
   std::set<std::string> names;
   for (const engine::BatchJob& job : whole->jobs)
     EXPECT_TRUE(names.insert(to_string(job)).second) << to_string(job);
+  options.only = {"recording=kt2"};
+  const Error without_data = plan_table1(*protocol, *suite, options, {}).error();
+  EXPECT_EQ(without_data.code, ErrorCode::data_missing);
+  EXPECT_NE(without_data.message.find("none of its recordings that --only keeps is under 'no such folder'"),
+            std::string::npos);
+  testing::expect_contains(without_data.hint, "icl_lr_kt2: put it under --data");
+  options.only = {"recording=kt2_path_31", "recording=icl_slow_31"};
+  EXPECT_EQ(plan_table1(*protocol, *suite, options, {.readings = {"default"}})->compared.size(), 1U);
+  options.only.clear();
   const auto unknown = plan_table1(*protocol, *suite, options, {.readings = {"kept"}});
   ASSERT_FALSE(unknown.has_value());
   testing::expect_contains(unknown.error().message, "no reading 'kept' (nearest: keep)");

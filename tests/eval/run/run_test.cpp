@@ -326,6 +326,12 @@ TEST_F(RunTest, AnEditedOptionThatNeedsAnImuIsNamedWithItsPlace) {
   EXPECT_EQ(prepared.error().hint.find("--variant no-imu needs none"), std::string::npos);
 }
 
+TEST(FrameWindow, MayLeaveOutEitherEnd) {
+  EXPECT_EQ(to_string(*parse_window(":60")), "0:60");
+  EXPECT_EQ(to_string(*parse_window("7:")), "7:");
+  for (const char* text : {":0", "::5", ":x", "5"}) EXPECT_FALSE(parse_window(text)) << text;
+}
+
 TEST_F(RunTest, TheHashTellsConfigurationsAndWindowsApart) {
   const auto base = prepare_run(spec("no-imu"));
   RunSpec edited = spec("no-imu");

@@ -27,6 +27,9 @@ TEST_F(RecordingNames, AreThoseOfFolders) {
   EXPECT_EQ(missing.error().code, ErrorCode::data_missing);
   EXPECT_NE(missing.error().hint.find("fr1_rpy"), std::string::npos);
   EXPECT_EQ(recordings_under(folder_ / "absent").error().code, ErrorCode::data_missing);
+  for (const auto* name : {"fr1_xyy", "fr1*"})
+    EXPECT_NE(find_recordings(name, folder_ / "absent").error().message.find("cannot be listed"),
+              std::string::npos);
   std::filesystem::create_directories(folder_ / "empty" / "scene" / "inner");
   EXPECT_EQ(recordings_under(folder_ / "empty").error().code, ErrorCode::data_missing);
 }
