@@ -173,16 +173,6 @@ void add_config_gates(const record::RunRecord& base, const record::RunRecord& fr
   results.push_back(gates.changed_defaults_fail ? regression("config", text) : note("config", text));
 }
 
-/// As first_divergence(), of trajectories that are the ones that the runs wrote.
-Result<std::optional<Divergence>> checked_divergence(const run_files::FoundRun& base,
-                                                     const run_files::FoundRun& fresh) {
-  for (const run_files::FoundRun* run : {&base, &fresh}) {
-    if (auto checked = run_files::check_file(run->folder, run->record, "trajectory.tum"); !checked)
-      return fail(checked.error().code, fmt::format("{}: {}", run->folder.string(), checked.error().message));
-  }
-  return first_divergence(base.folder, fresh.folder);
-}
-
 /// How a repetition differs from the first run of its side; empty if it does not.
 std::string difference(const run_files::FoundRun& first, const run_files::FoundRun& other) {
   if (first.record.status != other.record.status)
@@ -201,7 +191,7 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
     return fmt::format("{} is {} and {}", metric->key, text(a), text(b));
   }
   if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return {};
-  const auto divergence = checked_divergence(first, other);
+  const auto divergence = first_divergence(first.folder, other.folder);
   if (!divergence) return divergence.error().message;
   return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
 }
@@ -235,7 +225,7 @@ void add_divergence(ComparedRun& run, const Gates& gates) {
     run.gates.push_back(regression("trajectory", "NEW has no trajectory.tum, and BASE has one"));
     return;
   }
-  auto divergence = checked_divergence(base, fresh);
+  auto divergence = first_divergence(base.folder, fresh.folder);
   if (!divergence) {
     run.gates.push_back(regression("trajectory", divergence.error().message));
     return;
@@ -354,6 +344,18 @@ void release_details(RunPair& pair) {
   }
 }
 
+/// Whether the records and trajectories are what the runs wrote.
+Result<void> check_undamaged(std::span<const run_files::FoundRun> runs) {
+  for (const run_files::FoundRun& run : runs) {
+    if (run.state != run_files::RunState::whole)
+      return fail(ErrorCode::data_corrupt, (run.folder / run.record.reason).string());
+    if (!has_trajectory(run.folder)) continue;
+    if (auto checked = run_files::check_file(run.folder, run.record, "trajectory.tum"); !checked)
+      return fail(checked.error().code, (run.folder / checked.error().message).string());
+  }
+  return {};
+}
+
 bool knows(const std::vector<run_files::FoundRun>& runs, const std::string& key) {
   return std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
     return std::ranges::any_of(run.record.config, [&](const record::RecordedOption& option) {
@@ -419,9 +421,13 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
   return result;
 }
 
-RunComparison compare_runs(std::vector<run_files::FoundRun> base, std::vector<run_files::FoundRun> fresh,
-                           const Gates& gates, const std::vector<run_files::FoundRun>& confirming,
-                           const IgnoredOptions& ignored) {
+Result<RunComparison> compare_runs(std::vector<run_files::FoundRun> base,
+                                   std::vector<run_files::FoundRun> fresh, const Gates& gates,
+                                   const std::vector<run_files::FoundRun>& confirming,
+                                   const IgnoredOptions& ignored) {
+  for (const auto* runs : {&std::as_const(base), &std::as_const(fresh), &confirming}) {
+    if (auto checked = check_undamaged(*runs); !checked) return tl::unexpected(checked.error());
+  }
   RunComparison comparison;
   for (const std::string& key : ignored)
     if (!knows(base, key) && !knows(fresh, key))

@@ -60,12 +60,14 @@ struct RunComparison {
 /// Deterministic numbers are taken from the first run of each side; where both sides have enough replicates,
 /// numbers are compared by their ranges. `confirming` are the runs of a rerun of NEW (empty: none was made):
 /// a time or a size that failed is a regression only if it fails there as well, against the same baseline. A
-/// trajectory that is damaged or cannot be read is a regression with that reason. Differences of ignored
-/// options are a note (gate "options"); a key that no run knows is a note, too.
-[[nodiscard]] RunComparison compare_runs(std::vector<run_files::FoundRun> base,
-                                         std::vector<run_files::FoundRun> fresh, const Gates& gates,
-                                         const std::vector<run_files::FoundRun>& confirming = {},
-                                         const IgnoredOptions& ignored = {});
+/// trajectory without a recorded hash whose rows cannot be read is a regression with that reason. Differences
+/// of ignored options are a note (gate "options"); a key that no run knows is a note, too. Error
+/// data_corrupt, with the file, if a run of any of the three is not whole or its trajectory is not the one
+/// that it wrote.
+[[nodiscard]] Result<RunComparison> compare_runs(std::vector<run_files::FoundRun> base,
+                                                 std::vector<run_files::FoundRun> fresh, const Gates& gates,
+                                                 const std::vector<run_files::FoundRun>& confirming = {},
+                                                 const IgnoredOptions& ignored = {});
 
 /// Whether both sides have so many replicates (Gates::min_repetitions) that their distributions can be
 /// compared.

@@ -67,26 +67,11 @@ void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::Fo
   std::ranges::sort(to, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
 }
 
-/// A run whose record says nothing has no options to be known by, but the name of its folder.
-bool has_same_folder(const RunPair& lone, const RunPair& pair) {
-  const auto& own = lone.base.empty() ? lone.fresh.runs : lone.base.runs;
-  const auto& others = lone.base.empty() ? pair.base.runs : pair.fresh.runs;
-  return lone.experiment.recording == pair.experiment.recording &&
-         lone.experiment.variant == pair.experiment.variant &&
-         std::ranges::all_of(own, [&](const run_files::FoundRun& run) {
-           if (run.state == run_files::RunState::whole || !run.record.config.empty()) return false;
-           return std::ranges::any_of(others, [&](const run_files::FoundRun& other) {
-             return other.folder.filename() == run.folder.filename();
-           });
-         });
-}
-
 /// The one pair that a run without a counterpart belongs to, if there is only one.
-template <class Belongs>
-RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs, const Belongs& is_one) {
+RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs) {
   RunPair* only = nullptr;
   for (RunPair& pair : pairs) {
-    if (&pair == &lone || !is_one(lone, pair)) continue;
+    if (&pair == &lone || !belongs(lone, pair)) continue;
     if (only != nullptr) return nullptr;
     only = &pair;
   }
@@ -96,8 +81,7 @@ RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs, const Be
 void join_lone_runs(std::vector<RunPair>& pairs) {
   for (RunPair& lone : pairs) {
     if (lone.base.empty() == lone.fresh.empty()) continue;
-    RunPair* only = only_pair_of(lone, pairs, has_same_folder);
-    if (only == nullptr) only = only_pair_of(lone, pairs, belongs);
+    RunPair* only = only_pair_of(lone, pairs);
     if (only == nullptr) continue;
     move_runs(lone.base.runs, only->base.runs);
     move_runs(lone.fresh.runs, only->fresh.runs);

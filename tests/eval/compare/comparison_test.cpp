@@ -89,7 +89,8 @@ class ComparisonTest : public testing::InTemporaryFolder {
       return runs ? *runs : std::vector<FoundRun>();
     };
     return compare_runs(found("base"), found("new"), gates,
-                        confirm ? found("again") : std::vector<FoundRun>());
+                        confirm ? found("again") : std::vector<FoundRun>())
+        .value();
   }
 
   /// BASE as it is, NEW with a change.
@@ -194,7 +195,8 @@ TEST_F(ComparisonTest, PairsRunsThatDifferInIgnoredOptions) {
   changed.metrics.ate.value->stats.rmse *= 2;
   add("new", changed);
   const auto compared = [&](const IgnoredOptions& ignored) {
-    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored);
+    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored)
+        .value();
   };
   EXPECT_EQ(compared({}).runs.size(), 2U);
   EXPECT_EQ(compared({"iekf."}).runs.size(), 2U) << "another one differs, too";
@@ -217,7 +219,8 @@ TEST_F(ComparisonTest, AnIgnoredOptionMayBeSetOnOneSideOnly) {
   set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
   add("new", set);
   const auto compared = compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {},
-                                     {"iekf.max_iterations"});
+                                     {"iekf.max_iterations"})
+                            .value();
   ASSERT_EQ(compared.runs.size(), 1U);
   EXPECT_TRUE(compared.passed());
   ASSERT_NE(gate(compared, "options"), nullptr);
@@ -269,7 +272,7 @@ TEST_F(ComparisonTest, ALostRunIsOneRegressionAndBackIsAnImprovement) {
   EXPECT_EQ(gate(comparison, "status")->message, "ok -> lost (lost at frame 3)");
   const auto base = find_runs(folder_ / "base");
   const auto fresh = find_runs(folder_ / "new");
-  const auto reversed = compare_runs(*fresh, *base, Gates());
+  const auto reversed = compare_runs(*fresh, *base, Gates()).value();
   EXPECT_EQ(gate(reversed, "status")->verdict, GateVerdict::improvement);
 }
 
@@ -395,25 +398,30 @@ TEST_F(ComparisonTest, ADamagedTrajectoryIsARegression) {
   EXPECT_NE(message.find("trajectory.tum:1"), std::string::npos) << message;
 }
 
-/// Of a sweep: which configuration it was of, only the name of its folder says.
-TEST_F(ComparisonTest, ARunWithADamagedRecordIsComparedWithTheOneOfItsFolder) {
-  for (const char* side : {"base", "new"}) {
-    for (const int iterations : {3, 4}) {
-      RunRecord record = good_record();
-      record.config.push_back({"iekf.max_iterations", std::int64_t{iterations}, "--set"});
-      write(fmt::format("{}/fr1_rpy/full/0123456{}/record.json", side, iterations), to_json(record));
-    }
+TEST_F(ComparisonTest, ADamagedRunOfEitherSideIsAnErrorThatNamesItsFile) {
+  add("base", good_record());
+  add("new", good_record());
+  write("new/r00/fr1_rpy/full/01234567/record.json", std::string(5000, '\0'));
+  const auto whole = *find_runs(folder_ / "base");
+  const auto damaged = *find_runs(folder_ / "new");
+  for (const auto& comparison : {compare_runs(whole, damaged, Gates()), compare_runs(damaged, whole, Gates()),
+                                 compare_runs(whole, whole, Gates(), damaged)}) {
+    ASSERT_FALSE(comparison.has_value());
+    EXPECT_EQ(comparison.error().code, ErrorCode::data_corrupt);
+    EXPECT_EQ(comparison.error().message,
+              (folder_ / "new/r00/fr1_rpy/full/01234567/record.json").string() +
+                  " is damaged: not JSON at byte 1 (zeros after a power cut?); run it again");
   }
-  write("new/fr1_rpy/full/01234564/record.json", std::string(5000, '\0'));
-  const RunComparison comparison = compare();
-  ASSERT_EQ(comparison.runs.size(), 2U);
-  EXPECT_TRUE(comparison.runs[0].gates.size() > 1);
-  const GateResult* status = gate(comparison, "status");
-  ASSERT_NE(status, nullptr);
-  EXPECT_TRUE(status->fails);
-  EXPECT_EQ(
-      status->message,
-      "ok -> failed (record.json is damaged: not JSON at byte 1 (zeros after a power cut?); run it again)");
+}
+
+TEST_F(ComparisonTest, ABaselineRunThatFailedWhenItWasMadeIsCompared) {
+  RunRecord failed = good_record();
+  failed.status = RunStatus::failed;
+  failed.reason = "no space left";
+  add("base", failed, "");
+  add("new", good_record());
+  ASSERT_NE(gate(compare(), "status"), nullptr);
+  EXPECT_EQ(gate(compare(), "status")->verdict, GateVerdict::improvement);
 }
 
 TEST_F(ComparisonTest, RepetitionsThatDifferAreARegression) {
@@ -520,7 +528,7 @@ TEST_F(ComparisonTest, AHundredComparisonsOfEqualRunsRaiseNoAlarm) {
     return repetitions;
   };
   for (int i = 0; i < 100; ++i) {
-    const auto comparison = compare_runs(group(), group(), Gates());
+    const auto comparison = compare_runs(group(), group(), Gates()).value();
     EXPECT_TRUE(comparison.passed()) << comparison_text(comparison, false);
   }
 }
@@ -571,7 +579,7 @@ TEST_F(ComparisonTest, NamesAreEscapedInEveryFormat) {
   auto base = *find_runs(folder_ / "base");
   auto fresh = *find_runs(folder_ / "new");
   for (auto* runs : {&base, &fresh}) runs->front().record.recording.name = name;
-  const auto comparison = compare_runs(base, fresh, Gates());
+  const auto comparison = compare_runs(base, fresh, Gates()).value();
   const std::string xml = comparison_junit(comparison);
   EXPECT_NE(xml.find("classname=\"a&lt;b&gt;&amp;&quot;c&quot;|`d`/full\""), std::string::npos) << xml;
   EXPECT_NE(xml.find("lost &lt;at&gt; &quot;frame&quot; &amp; | more\\x0A# EOF"), std::string::npos) << xml;
