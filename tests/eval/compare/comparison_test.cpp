@@ -240,11 +240,21 @@ TEST_F(ComparisonTest, WorseMetricIsARegressionAndBetterOneAnImprovement) {
   EXPECT_NE(gate(comparison, "ate_rmse_m")->message.find("+0.1 %"), std::string::npos);
   ASSERT_NE(gate(comparison, "aie_grey"), nullptr);
   EXPECT_EQ(gate(comparison, "aie_grey")->verdict, GateVerdict::improvement);
-  EXPECT_NE(gate(comparison, "aie_grey")->message.find("take NEW as the next BASE"), std::string::npos);
+  EXPECT_TRUE(comparison.notes.empty()) << "no next BASE after a regression: " << comparison.notes.front();
   Gates gates;
   gates.improvements_fail = false;
   comparison = compare(gates);
   EXPECT_EQ(comparison.failures(), 1U);
+}
+
+TEST_F(ComparisonTest, ANextBaseIsSuggestedOnceAndOnlyWithoutRegressions) {
+  const RunComparison better = compare_changed([](RunRecord& record) {
+    record.metrics.ate.value->stats.rmse *= 0.5;
+    record.metrics.aie.value->all.aie_grey *= 0.5;
+  });
+  EXPECT_EQ(better.count(GateVerdict::improvement), 2U);
+  ASSERT_EQ(better.notes.size(), 1U);
+  EXPECT_NE(better.notes[0].find("take NEW as the next BASE"), std::string::npos);
 }
 
 TEST_F(ComparisonTest, ADroppedFrameIsCaughtByFramesAndCoverage) {
@@ -257,9 +267,21 @@ TEST_F(ComparisonTest, ADroppedFrameIsCaughtByFramesAndCoverage) {
   EXPECT_EQ(gate(comparison, "coverage")->verdict, GateVerdict::regression);
 }
 
-TEST_F(ComparisonTest, AnyChangeOfTheModelIsARegression) {
-  EXPECT_EQ(gate(compare_changed([](RunRecord& r) { ++r.model.vertices; }), "model_vertices")->verdict,
-            GateVerdict::regression);
+TEST_F(ComparisonTest, ANumberWithoutADirectionIsChangedAndListedAfterRegressions) {
+  const RunComparison comparison = compare_changed([](RunRecord& r) {
+    ++r.model.vertices;
+    r.metrics.ate.value->stats.rmse *= 2;
+  });
+  ASSERT_NE(gate(comparison, "model_vertices"), nullptr);
+  EXPECT_EQ(gate(comparison, "model_vertices")->verdict, GateVerdict::changed);
+  EXPECT_TRUE(gate(comparison, "model_vertices")->fails);
+  EXPECT_TRUE(comparison_summary(comparison).starts_with("FAIL: 1 regression, 1 changed, 0 improvements, "));
+  const auto lines = comparison_lines(comparison, false);
+  ASSERT_GE(lines.size(), 2U);
+  EXPECT_EQ(lines[0].gate, "ate_rmse_m");
+  EXPECT_EQ(lines[1].gate, "model_vertices");
+  EXPECT_NE(comparison_text(comparison, false).find("\nCHANGED "), std::string::npos);
+  EXPECT_NE(comparison_junit(comparison).find("<failure type=\"CHANGED\""), std::string::npos);
 }
 
 TEST_F(ComparisonTest, ALostRunIsOneRegressionAndBackIsAnImprovement) {
@@ -459,7 +481,8 @@ TEST_F(ComparisonTest, WhatOnlyMakesPosesWrongFails) {
   add("new", with_truth(6, 1.2, 0.01));
   EXPECT_EQ(gate(compare(), "silent_failures")->verdict, GateVerdict::regression);
   add("new", with_truth(2, 0.6, 0.01));
-  EXPECT_EQ(gate(compare(), "nees_pose")->verdict, GateVerdict::regression);
+  EXPECT_EQ(gate(compare(), "nees_pose")->verdict, GateVerdict::changed);
+  EXPECT_TRUE(gate(compare(), "nees_pose")->fails);
   EXPECT_EQ(gate(compare(), "silent_failures"), nullptr);
   add("new", with_truth(2, 1.2, 0.02));
   EXPECT_EQ(gate(compare(), "ate_revised_m")->verdict, GateVerdict::regression);
@@ -642,6 +665,13 @@ TEST_F(ComparisonTest, JsonHasEveryGate) {
   ASSERT_NE(ate, gates.end());
   EXPECT_EQ(ate->at("new"), 0.5);
   EXPECT_EQ(ate->at("unit"), "m");
+  EXPECT_EQ(ate->at("better"), "smaller");
+  const auto base = ate->at("base").get<double>();
+  EXPECT_DOUBLE_EQ(ate->at("tolerance").get<double>(), 1e-9 * base);
+  EXPECT_DOUBLE_EQ(ate->at("ratio").get<double>(), 0.5 / base);
+  const auto wall = std::ranges::find_if(gates, [](const auto& g) { return g.at("gate") == "wall_s"; });
+  ASSERT_NE(wall, gates.end());
+  EXPECT_DOUBLE_EQ(wall->at("tolerance").get<double>(), 2.5) << "factor 1.25 of 10 s";
   EXPECT_TRUE(json.at("runs").at(0).at("bit_identical").get<bool>());
   EXPECT_EQ(parse_comparison_format("pdf").error().code, ErrorCode::usage);
 }
