@@ -433,7 +433,9 @@ Result<RunComparison> compare_runs(std::vector<run_files::FoundRun> base,
     if (!knows(base, key) && !knows(fresh, key))
       comparison.notes.push_back(fmt::format("no run has an ignored option '{}'", key));
   // Records are large, and there may be thousands: none is copied, and what no format shows is released.
-  for (RunPair& pair : pair_runs(std::move(base), std::move(fresh), ignored)) {
+  std::vector<RunPair> pairs = pair_runs(std::move(base), std::move(fresh), ignored);
+  for (std::string& text : unpaired_notes(pairs)) comparison.notes.push_back(std::move(text));
+  for (RunPair& pair : pairs) {
     comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming, ignored));
     release_details(comparison.runs.back().runs);
   }

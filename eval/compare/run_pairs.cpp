@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -134,6 +135,26 @@ void set_labels(std::vector<RunPair>& pairs) {
   }
 }
 
+/// Keys of the options that differ; nothing if the experiments differ in anything else.
+std::optional<std::set<std::string>> only_options(const run_files::RunIdentity& a,
+                                                  const run_files::RunIdentity& b) {
+  const auto but_options = [](const run_files::RunIdentity& e) {
+    return std::tie(e.recording, e.variant, e.imu, e.first_frame, e.frames);
+  };
+  if (but_options(a) != but_options(b)) return std::nullopt;
+  run_files::RunOptions differing;
+  std::ranges::set_symmetric_difference(a.options, b.options, std::back_inserter(differing));
+  std::set<std::string> keys;
+  for (const auto& [key, value] : differing) keys.insert(key);
+  return keys;
+}
+
+/// Whether only the variants differ; which IMU is used belongs to a variant.
+bool only_variant(const run_files::RunIdentity& a, const run_files::RunIdentity& b) {
+  return a.variant != b.variant && std::tie(a.recording, a.options, a.first_frame, a.frames) ==
+                                       std::tie(b.recording, b.options, b.first_frame, b.frames);
+}
+
 }  // namespace
 
 bool is_ignored(const IgnoredOptions& ignored, std::string_view key) {
@@ -203,6 +224,39 @@ std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base, std::vecto
   }
   set_labels(pairs);
   return pairs;
+}
+
+std::vector<std::string> unpaired_notes(std::span<const RunPair> pairs) {
+  std::set<std::string> keys;
+  std::set<std::string> variants;
+  for (const RunPair& base : pairs) {
+    if (!base.fresh.empty()) continue;
+    std::optional<std::set<std::string>> fewest;
+    std::set<std::string> others;
+    for (const RunPair& fresh : pairs) {
+      if (!fresh.base.empty()) continue;
+      auto differing = only_options(base.experiment, fresh.experiment);
+      if (differing && (!fewest || differing->size() < fewest->size())) fewest = std::move(differing);
+      if (only_variant(base.experiment, fresh.experiment))
+        others.insert(fmt::format("{} and {}", base.experiment.variant, fresh.experiment.variant));
+    }
+    if (fewest) {
+      keys.merge(*fewest);
+    } else {
+      variants.merge(others);
+    }
+  }
+  std::vector<std::string> notes;
+  if (!keys.empty())
+    notes.push_back(
+        fmt::format("runs of BASE and NEW differ only in options: {}; --ignore-options {} pairs them",
+                    fmt::join(keys, ", "), fmt::join(keys, " --ignore-options ")));
+  if (!variants.empty())
+    notes.push_back(
+        fmt::format("runs of BASE and NEW differ only in the variant ({}): `compare` pairs runs of equal "
+                    "variants; `fusebench best` and `fusebench report` compare the variants of one folder",
+                    fmt::join(variants, ", ")));
+  return notes;
 }
 
 }  // namespace fusebench::compare

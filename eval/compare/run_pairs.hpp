@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,5 +58,9 @@ struct RunPair {
 [[nodiscard]] std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base,
                                              std::vector<run_files::FoundRun> fresh,
                                              const IgnoredOptions& ignored = {});
+
+/// Sentences about runs without a counterpart: which options alone, or which variants alone, tell runs of
+/// BASE from runs of NEW, and how these can be compared. At most one of each kind.
+[[nodiscard]] std::vector<std::string> unpaired_notes(std::span<const RunPair> pairs);
 
 }  // namespace fusebench::compare

@@ -321,6 +321,44 @@ TEST_F(ComparisonTest, AnOptionThatSomebodySetMakesAnotherExperiment) {
   EXPECT_EQ(comparison.runs[1].runs.label, "fr1_rpy/full [iekf.max_iterations=8]");
 }
 
+TEST_F(ComparisonTest, OptionsInWhichUnpairedRunsDifferAreNamedOnce) {
+  for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
+    add("base", good_record(recording));
+    RunRecord set = good_record(recording);
+    set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
+    set.config[1].origin = "--set";
+    set.config[1].value = 0.02;
+    add("new", set);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_FALSE(comparison.passed());
+  ASSERT_EQ(comparison.notes.size(), 1U);
+  EXPECT_EQ(
+      comparison.notes[0],
+      "runs of BASE and NEW differ only in options: iekf.max_iterations, tsdf.voxel_m; --ignore-options "
+      "iekf.max_iterations --ignore-options tsdf.voxel_m pairs them");
+}
+
+TEST_F(ComparisonTest, VariantsInWhichUnpairedRunsDifferAreNamedWithTheVerbsThatCompareThem) {
+  for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
+    RunRecord full = good_record(recording, "full");
+    full.recording.imu = "recorded";
+    add("base", full);
+    add("new", good_record(recording, "no-imu"));
+  }
+  const RunComparison comparison = compare();
+  ASSERT_EQ(comparison.notes.size(), 1U);
+  EXPECT_TRUE(comparison.notes[0].starts_with(
+      "runs of BASE and NEW differ only in the variant (full and no-imu): `compare` pairs"))
+      << comparison.notes[0];
+}
+
+TEST_F(ComparisonTest, UnpairedRunsOfOtherRecordingsHaveNoHint) {
+  add("base", good_record("fr1_rpy"));
+  add("new", good_record("fr1_xyz", "dm"));
+  EXPECT_TRUE(compare().notes.empty());
+}
+
 TEST_F(ComparisonTest, AMissingRunFailsAndANewOneDoesNot) {
   add("base", good_record());
   add("base", good_record("fr1_xyz"));
