@@ -31,11 +31,6 @@ GateResult note(std::string gate, std::string message) {
   return {std::move(gate), GateVerdict::note, false, std::move(message)};
 }
 
-GateResult improvement(std::string gate, const std::string& message, const Gates& gates) {
-  return {std::move(gate), GateVerdict::improvement, gates.improvements_fail,
-          fmt::format("{}; {}", message, kUpdate)};
-}
-
 std::string status_text(const record::RunRecord& record) {
   return record.reason.empty() ? std::string(record::to_string(record.status))
                                : fmt::format("{} ({})", record::to_string(record.status), record.reason);
@@ -44,7 +39,8 @@ std::string status_text(const record::RunRecord& record) {
 GateResult status_gate(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates) {
   const std::string change = fmt::format("{} -> {}", status_text(base), status_text(fresh));
   if (fresh.status < base.status) return regression("status", change);
-  if (fresh.status > base.status) return improvement("status", change, gates);
+  if (fresh.status > base.status)
+    return {"status", GateVerdict::improvement, gates.improvements_fail, change};
   if (fresh.status == record::RunStatus::ok) return {"status", GateVerdict::unchanged, false, {}};
   return note("status", fmt::format("both {}: {}", record::to_string(fresh.status), fresh.reason));
 }
@@ -56,49 +52,34 @@ std::string change_text(double base, double fresh, std::string_view unit) {
   return text + ")";
 }
 
-GateResult judge(const registry::RunMetric& metric, const MetricTolerance& tolerance, double base,
-                 double fresh, const Gates& gates) {
-  const std::string key(metric.key);
-  GateResult result{key, GateVerdict::unchanged, false, {}, std::string(metric.unit), base, fresh};
-  const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(base));
-  const double change = fresh - base;
-  if (std::abs(change) <= allowed) return result;
-  const std::string text = fmt::format("{}, tolerance {}", change_text(base, fresh, metric.unit),
-                                       quantity_text(allowed, metric.unit));
-  const bool better = (tolerance.better == registry::Better::smaller && change < 0) ||
-                      (tolerance.better == registry::Better::larger && change > 0);
-  GateResult judged = better ? improvement(key, text, gates) : regression(key, text);
-  result.verdict = judged.verdict;
-  result.fails = judged.fails;
-  result.message = std::move(judged.message);
+GateResult metric_gate(const registry::RunMetric& metric, const MetricTolerance& tolerance,
+                       const record::Outcome<double>& base, const record::Outcome<double>& fresh,
+                       const Gates& gates) {
+  GateResult result = number_gate(metric, tolerance, base.value, fresh.value);
+  if (!fresh.value) {
+    result.verdict = GateVerdict::regression;
+    result.fails = true;
+    result.message = fmt::format("{} -> none: {}", quantity_text(*base.value, metric.unit), fresh.reason);
+  } else if (!base.value) {
+    result.verdict = GateVerdict::note;
+    result.message = fmt::format("new: {}; the baseline has none: {}",
+                                 quantity_text(*fresh.value, metric.unit), base.reason);
+  } else if (std::abs(*fresh.value - *base.value) > *result.tolerance) {
+    judge_change(result, gates);
+    result.message = fmt::format("{}, tolerance {}", change_text(*base.value, *fresh.value, metric.unit),
+                                 quantity_text(*result.tolerance, metric.unit));
+  }
   return result;
 }
 
 void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
-  const record::RunRecord& base = pair.base.front().record;
-  const record::RunRecord& fresh = pair.fresh.front().record;
   for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
     const registry::RunMetric& metric = *gated_metrics()[i];
-    const auto before = registry::number_of(base, metric);
-    const auto after = registry::number_of(fresh, metric);
-    if (before.value && after.value) {
-      const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
-      results.push_back(judge(metric, tolerance, *before.value, *after.value, gates));
-    } else if (before.value) {
-      GateResult gone =
-          regression(std::string(metric.key),
-                     fmt::format("{} -> none: {}", quantity_text(*before.value, metric.unit), after.reason));
-      gone.unit = metric.unit;
-      gone.base = before.value;
-      results.push_back(std::move(gone));
-    } else if (after.value) {
-      GateResult added =
-          note(std::string(metric.key), fmt::format("new: {}; the baseline has none: {}",
-                                                    quantity_text(*after.value, metric.unit), before.reason));
-      added.unit = metric.unit;
-      added.fresh = after.value;
-      results.push_back(std::move(added));
-    }
+    const auto base = registry::number_of(pair.base.front().record, metric);
+    const auto fresh = registry::number_of(pair.fresh.front().record, metric);
+    if (!base.value && !fresh.value) continue;
+    const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
+    results.push_back(metric_gate(metric, tolerance, base, fresh, gates));
   }
 }
 
@@ -173,16 +154,6 @@ void add_config_gates(const record::RunRecord& base, const record::RunRecord& fr
   results.push_back(gates.changed_defaults_fail ? regression("config", text) : note("config", text));
 }
 
-/// As first_divergence(), of trajectories that are the ones that the runs wrote.
-Result<std::optional<Divergence>> checked_divergence(const run_files::FoundRun& base,
-                                                     const run_files::FoundRun& fresh) {
-  for (const run_files::FoundRun* run : {&base, &fresh}) {
-    if (auto checked = run_files::check_file(run->folder, run->record, "trajectory.tum"); !checked)
-      return fail(checked.error().code, fmt::format("{}: {}", run->folder.string(), checked.error().message));
-  }
-  return first_divergence(base.folder, fresh.folder);
-}
-
 /// How a repetition differs from the first run of its side; empty if it does not.
 std::string difference(const run_files::FoundRun& first, const run_files::FoundRun& other) {
   if (first.record.status != other.record.status)
@@ -201,7 +172,7 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
     return fmt::format("{} is {} and {}", metric->key, text(a), text(b));
   }
   if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return {};
-  const auto divergence = checked_divergence(first, other);
+  const auto divergence = first_divergence(first.folder, other.folder);
   if (!divergence) return divergence.error().message;
   return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
 }
@@ -235,7 +206,7 @@ void add_divergence(ComparedRun& run, const Gates& gates) {
     run.gates.push_back(regression("trajectory", "NEW has no trajectory.tum, and BASE has one"));
     return;
   }
-  auto divergence = checked_divergence(base, fresh);
+  auto divergence = first_divergence(base.folder, fresh.folder);
   if (!divergence) {
     run.gates.push_back(regression("trajectory", divergence.error().message));
     return;
@@ -354,6 +325,18 @@ void release_details(RunPair& pair) {
   }
 }
 
+/// Whether the records and trajectories are what the runs wrote.
+Result<void> check_undamaged(std::span<const run_files::FoundRun> runs) {
+  for (const run_files::FoundRun& run : runs) {
+    if (run.state != run_files::RunState::whole)
+      return fail(ErrorCode::data_corrupt, (run.folder / run.record.reason).string());
+    if (!has_trajectory(run.folder)) continue;
+    if (auto checked = run_files::check_file(run.folder, run.record, "trajectory.tum"); !checked)
+      return fail(checked.error().code, (run.folder / checked.error().message).string());
+  }
+  return {};
+}
+
 bool knows(const std::vector<run_files::FoundRun>& runs, const std::string& key) {
   return std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
     return std::ranges::any_of(run.record.config, [&](const record::RecordedOption& option) {
@@ -368,6 +351,8 @@ std::string_view to_string(GateVerdict verdict) {
   switch (verdict) {
     case GateVerdict::regression:
       return "REGRESSION";
+    case GateVerdict::changed:
+      return "CHANGED";
     case GateVerdict::improvement:
       return "IMPROVEMENT";
     case GateVerdict::suspect:
@@ -378,6 +363,23 @@ std::string_view to_string(GateVerdict verdict) {
       break;
   }
   return "unchanged";
+}
+
+GateResult number_gate(const registry::RunMetric& metric, const MetricTolerance& tolerance,
+                       std::optional<double> base, std::optional<double> fresh) {
+  GateResult gate{
+      std::string(metric.key), GateVerdict::unchanged, false, {}, std::string(metric.unit), base, fresh};
+  if (base) gate.tolerance = std::max(tolerance.absolute, tolerance.relative * std::abs(*base));
+  gate.better = tolerance.better;
+  return gate;
+}
+
+void judge_change(GateResult& gate, const Gates& gates) {
+  const bool is_better = (*gate.fresh < *gate.base) == (gate.better == registry::Better::smaller);
+  gate.verdict = gate.better == registry::Better::neither ? GateVerdict::changed
+                 : is_better                              ? GateVerdict::improvement
+                                                          : GateVerdict::regression;
+  gate.fails = gate.verdict != GateVerdict::improvement || gates.improvements_fail;
 }
 
 bool RunComparison::passed() const { return failures() == 0; }
@@ -419,19 +421,31 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
   return result;
 }
 
-RunComparison compare_runs(std::vector<run_files::FoundRun> base, std::vector<run_files::FoundRun> fresh,
-                           const Gates& gates, const std::vector<run_files::FoundRun>& confirming,
-                           const IgnoredOptions& ignored) {
+Result<RunComparison> compare_runs(std::vector<run_files::FoundRun> base,
+                                   std::vector<run_files::FoundRun> fresh, const Gates& gates,
+                                   const std::vector<run_files::FoundRun>& confirming,
+                                   const IgnoredOptions& ignored) {
+  for (const auto* runs : {&std::as_const(base), &std::as_const(fresh), &confirming}) {
+    if (auto checked = check_undamaged(*runs); !checked) return tl::unexpected(checked.error());
+  }
   RunComparison comparison;
   for (const std::string& key : ignored)
     if (!knows(base, key) && !knows(fresh, key))
       comparison.notes.push_back(fmt::format("no run has an ignored option '{}'", key));
   // Records are large, and there may be thousands: none is copied, and what no format shows is released.
-  for (RunPair& pair : pair_runs(std::move(base), std::move(fresh), ignored)) {
+  std::vector<RunPair> pairs = pair_runs(std::move(base), std::move(fresh), ignored);
+  for (std::string& text : unpaired_notes(pairs)) comparison.notes.push_back(std::move(text));
+  for (RunPair& pair : pairs) {
     comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming, ignored));
     release_details(comparison.runs.back().runs);
   }
   add_unused_overrides(gates, comparison);
+  const bool is_worse =
+      comparison.count(GateVerdict::regression) > 0 || comparison.count(GateVerdict::suspect) > 0;
+  const bool differs =
+      comparison.count(GateVerdict::improvement) > 0 || comparison.count(GateVerdict::changed) > 0;
+  if (differs && !is_worse)
+    comparison.notes.push_back(fmt::format("no regression; if the changes are intended, {}", kUpdate));
   return comparison;
 }
 

@@ -18,6 +18,7 @@ namespace fusebench::compare {
 /// In the order in which people read them.
 enum class GateVerdict {
   regression,
+  changed,      ///< beyond the tolerance, of a number without a better direction; fails
   improvement,  ///< beyond the tolerance: the baseline is out of date
   suspect,      ///< slower or larger, but measured once: a rerun decides
   note,         ///< said, never failing
@@ -36,6 +37,9 @@ struct GateResult {
   std::optional<double> fresh = {};  ///< of NEW
   std::optional<double> p = {};      ///< of the rank test, if it was made
   std::string not_gated = {};        ///< of times: why they decide nothing; else empty
+  /// In `unit`: |fresh - base| up to this passes; of times (factor - 1) * base. Absent without a base.
+  std::optional<double> tolerance = {};
+  std::optional<registry::Better> better = {};  ///< of numbers
 };
 
 struct ComparedRun {
@@ -60,12 +64,21 @@ struct RunComparison {
 /// Deterministic numbers are taken from the first run of each side; where both sides have enough replicates,
 /// numbers are compared by their ranges. `confirming` are the runs of a rerun of NEW (empty: none was made):
 /// a time or a size that failed is a regression only if it fails there as well, against the same baseline. A
-/// trajectory that is damaged or cannot be read is a regression with that reason. Differences of ignored
-/// options are a note (gate "options"); a key that no run knows is a note, too.
-[[nodiscard]] RunComparison compare_runs(std::vector<run_files::FoundRun> base,
-                                         std::vector<run_files::FoundRun> fresh, const Gates& gates,
-                                         const std::vector<run_files::FoundRun>& confirming = {},
-                                         const IgnoredOptions& ignored = {});
+/// trajectory without a recorded hash whose rows cannot be read is a regression with that reason. Differences
+/// of ignored options are a note (gate "options"); a key that no run knows is a note, too. Error
+/// data_corrupt, with the file, if a run of any of the three is not whole or its trajectory is not the one
+/// that it wrote.
+[[nodiscard]] Result<RunComparison> compare_runs(std::vector<run_files::FoundRun> base,
+                                                 std::vector<run_files::FoundRun> fresh, const Gates& gates,
+                                                 const std::vector<run_files::FoundRun>& confirming = {},
+                                                 const IgnoredOptions& ignored = {});
+
+/// The gate of a number, unchanged, with all that is known of it before it is judged.
+[[nodiscard]] GateResult number_gate(const registry::RunMetric& metric, const MetricTolerance& tolerance,
+                                     std::optional<double> base, std::optional<double> fresh);
+
+/// Sets verdict and fails of a gate of which both numbers are known and further apart than its tolerance.
+void judge_change(GateResult& gate, const Gates& gates);
 
 /// Whether both sides have so many replicates (Gates::min_repetitions) that their distributions can be
 /// compared.

@@ -28,9 +28,6 @@ enum class ComparisonFormat {
 [[nodiscard]] std::string render_comparison(const RunComparison& comparison, ComparisonFormat format,
                                             bool all = false, std::size_t width = 0);
 
-/// As tables for people have it: "REGRESSION", "POSSIBLE SLOWDOWN".
-[[nodiscard]] std::string_view verdict_text(GateVerdict verdict);
-
 /// One gate as people read it.
 struct ComparisonLine {
   GateVerdict verdict = GateVerdict::unchanged;
@@ -38,12 +35,12 @@ struct ComparisonLine {
   std::string gate;
   std::string message;
 };
-/// Regressions, improvements, possible slowdowns, notes; with `all` what is unchanged, too. Divergences and
-/// times that are not gated stand in comparison_remarks() unless `all`.
+/// Regressions, changes, improvements, possible slowdowns, notes; with `all` what is unchanged, too.
+/// Divergences and times that are not gated stand in comparison_remarks() unless `all`.
 [[nodiscard]] std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bool all);
 
-/// "FAIL: 1 regression, 2 improvements, 0 possible slowdowns in 24 runs; trajectories: 22 bit-identical, 2
-/// different".
+/// "FAIL: 1 regression, 3 changed, 2 improvements, 0 possible slowdowns in 24 runs; trajectories: 22
+/// bit-identical, 2 different".
 [[nodiscard]] std::string comparison_summary(const RunComparison& comparison);
 
 /// Sentences beneath the lines: where runs diverge, the earliest first; times that were not gated; notes.

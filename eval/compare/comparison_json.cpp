@@ -20,10 +20,19 @@ Json json_of(const RunSide& side) {
 }
 
 Json json_of(const GateResult& gate) {
-  return {{"gate", gate.gate},          {"verdict", to_string(gate.verdict)},
-          {"fails", gate.fails},        {"unit", gate.unit},
-          {"base", json_of(gate.base)}, {"new", json_of(gate.fresh)},
-          {"p", json_of(gate.p)},       {"message", gate.message},
+  std::optional<double> ratio;
+  if (gate.fresh && gate.base && *gate.base != 0) ratio = *gate.fresh / *gate.base;
+  return {{"gate", gate.gate},
+          {"verdict", to_string(gate.verdict)},
+          {"fails", gate.fails},
+          {"unit", gate.unit},
+          {"base", json_of(gate.base)},
+          {"new", json_of(gate.fresh)},
+          {"tolerance", json_of(gate.tolerance)},
+          {"ratio", json_of(ratio)},
+          {"better", gate.better ? Json(to_string(*gate.better)) : Json(nullptr)},
+          {"p", json_of(gate.p)},
+          {"message", gate.message},
           {"not_gated", gate.not_gated}};
 }
 
@@ -65,6 +74,7 @@ std::string comparison_json(const RunComparison& comparison) {
                               {"passed", comparison.passed()},
                               {"failures", comparison.failures()},
                               {"regressions", comparison.count(GateVerdict::regression)},
+                              {"changed", comparison.count(GateVerdict::changed)},
                               {"improvements", comparison.count(GateVerdict::improvement)},
                               {"possible_slowdowns", comparison.count(GateVerdict::suspect)},
                               {"notes", comparison.notes},

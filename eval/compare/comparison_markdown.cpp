@@ -28,7 +28,7 @@ std::string comparison_markdown(const RunComparison& comparison, bool all) {
       fmt::format("### fusebench compare\n\n**{}**\n", markdown_escaped(comparison_summary(comparison)));
   std::vector<text::TableCells> cells = {{"verdict", "run", "gate", "what changed"}};
   for (const ComparisonLine& line : comparison_lines(comparison, all)) {
-    cells.push_back({std::string(verdict_text(line.verdict)), markdown_escaped(line.run),
+    cells.push_back({std::string(to_string(line.verdict)), markdown_escaped(line.run),
                      markdown_escaped(line.gate), markdown_escaped(line.message)});
   }
   if (cells.size() > 1) text += fmt::format("\n{}", text::markdown_table(cells, cells.front().size()));

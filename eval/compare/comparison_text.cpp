@@ -92,10 +92,6 @@ std::string render_comparison(const RunComparison& comparison, ComparisonFormat 
   return {};
 }
 
-std::string_view verdict_text(GateVerdict verdict) {
-  return verdict == GateVerdict::suspect ? "POSSIBLE SLOWDOWN" : to_string(verdict);
-}
-
 std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bool all) {
   std::vector<ComparisonLine> lines;
   for (const ComparedRun& run : comparison.runs) {
@@ -112,8 +108,9 @@ std::vector<ComparisonLine> comparison_lines(const RunComparison& comparison, bo
 
 std::string comparison_summary(const RunComparison& comparison) {
   return fmt::format(
-      "{}: {}, {}, {} in {}; trajectories: {} bit-identical, {} different",
+      "{}: {}, {} changed, {}, {} in {}; trajectories: {} bit-identical, {} different",
       comparison.passed() ? "PASS" : "FAIL", counted(comparison.count(GateVerdict::regression), "regression"),
+      comparison.count(GateVerdict::changed),
       counted(comparison.count(GateVerdict::improvement), "improvement"),
       counted(comparison.count(GateVerdict::suspect), "possible slowdown"),
       counted(comparison.runs.size(), "run"), comparison.identical(), comparison.diverging().size());
@@ -139,7 +136,7 @@ std::string comparison_text(const RunComparison& comparison, bool all, std::size
   std::string text = comparison_summary(comparison) + "\n";
   std::vector<std::vector<std::string>> cells;
   for (const ComparisonLine& line : comparison_lines(comparison, all))
-    cells.push_back({std::string(verdict_text(line.verdict)), line.run, line.gate, line.message});
+    cells.push_back({std::string(to_string(line.verdict)), line.run, line.gate, line.message});
   if (!cells.empty()) text += fmt::format("\n{}", text::fitted_columns(cells, width));
   const std::vector<std::string> remarks = comparison_remarks(comparison);
   if (!remarks.empty()) text += "\n";

@@ -33,18 +33,12 @@ std::string range_text(const MedianRange& range, std::string_view unit) {
 
 GateResult judge(const registry::RunMetric& metric, const MetricTolerance& tolerance,
                  const MedianRange& before, const MedianRange& after, const Gates& gates) {
-  GateResult result{std::string(metric.key),  GateVerdict::unchanged, false,       {},
-                    std::string(metric.unit), before.median,          after.median};
-  const double change = after.median - before.median;
-  const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(before.median));
-  if (std::abs(change) <= allowed || !are_apart(before, after)) return result;
+  GateResult result = number_gate(metric, tolerance, before.median, after.median);
+  if (std::abs(after.median - before.median) <= *result.tolerance || !are_apart(before, after)) return result;
+  judge_change(result, gates);
   result.message =
       fmt::format("{} -> {}, medians and ranges of replicates, which are further apart than either is wide",
                   range_text(before, metric.unit), range_text(after, metric.unit));
-  const bool better = (tolerance.better == registry::Better::smaller && change < 0) ||
-                      (tolerance.better == registry::Better::larger && change > 0);
-  result.verdict = better ? GateVerdict::improvement : GateVerdict::regression;
-  result.fails = !better || gates.improvements_fail;
   return result;
 }
 
@@ -88,13 +82,15 @@ std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates)
     const registry::RunMetric& metric = *gated_metrics()[i];
     const auto before = registry::median_range(base, metric);
     const auto after = registry::median_range(fresh, metric);
+    const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
     if (before && after) {
-      const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
       results.push_back(judge(metric, tolerance, *before, *after, gates));
     } else if (before && !fresh.empty()) {
-      results.push_back({std::string(metric.key), GateVerdict::regression, true,
-                         fmt::format("{} -> none in any replicate", range_text(*before, metric.unit)),
-                         std::string(metric.unit), before->median});
+      GateResult gone = number_gate(metric, tolerance, before->median, std::nullopt);
+      gone.verdict = GateVerdict::regression;
+      gone.fails = true;
+      gone.message = fmt::format("{} -> none in any replicate", range_text(*before, metric.unit));
+      results.push_back(std::move(gone));
     }
   }
   if (!has_replicates_to_gate(pair, gates)) do_not_gate(pair, gates, results);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -67,26 +68,11 @@ void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::Fo
   std::ranges::sort(to, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
 }
 
-/// A run whose record says nothing has no options to be known by, but the name of its folder.
-bool has_same_folder(const RunPair& lone, const RunPair& pair) {
-  const auto& own = lone.base.empty() ? lone.fresh.runs : lone.base.runs;
-  const auto& others = lone.base.empty() ? pair.base.runs : pair.fresh.runs;
-  return lone.experiment.recording == pair.experiment.recording &&
-         lone.experiment.variant == pair.experiment.variant &&
-         std::ranges::all_of(own, [&](const run_files::FoundRun& run) {
-           if (run.state == run_files::RunState::whole || !run.record.config.empty()) return false;
-           return std::ranges::any_of(others, [&](const run_files::FoundRun& other) {
-             return other.folder.filename() == run.folder.filename();
-           });
-         });
-}
-
 /// The one pair that a run without a counterpart belongs to, if there is only one.
-template <class Belongs>
-RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs, const Belongs& is_one) {
+RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs) {
   RunPair* only = nullptr;
   for (RunPair& pair : pairs) {
-    if (&pair == &lone || !is_one(lone, pair)) continue;
+    if (&pair == &lone || !belongs(lone, pair)) continue;
     if (only != nullptr) return nullptr;
     only = &pair;
   }
@@ -96,8 +82,7 @@ RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs, const Be
 void join_lone_runs(std::vector<RunPair>& pairs) {
   for (RunPair& lone : pairs) {
     if (lone.base.empty() == lone.fresh.empty()) continue;
-    RunPair* only = only_pair_of(lone, pairs, has_same_folder);
-    if (only == nullptr) only = only_pair_of(lone, pairs, belongs);
+    RunPair* only = only_pair_of(lone, pairs);
     if (only == nullptr) continue;
     move_runs(lone.base.runs, only->base.runs);
     move_runs(lone.fresh.runs, only->fresh.runs);
@@ -148,6 +133,26 @@ void set_labels(std::vector<RunPair>& pairs) {
     pair.label += fmt::format(" (frames {}:{}, IMU: {})", pair.experiment.first_frame,
                               pair.experiment.first_frame + pair.experiment.frames, pair.experiment.imu);
   }
+}
+
+/// Keys of the options that differ; nothing if the experiments differ in anything else.
+std::optional<std::set<std::string>> only_options(const run_files::RunIdentity& a,
+                                                  const run_files::RunIdentity& b) {
+  const auto but_options = [](const run_files::RunIdentity& e) {
+    return std::tie(e.recording, e.variant, e.imu, e.first_frame, e.frames);
+  };
+  if (but_options(a) != but_options(b)) return std::nullopt;
+  run_files::RunOptions differing;
+  std::ranges::set_symmetric_difference(a.options, b.options, std::back_inserter(differing));
+  std::set<std::string> keys;
+  for (const auto& [key, value] : differing) keys.insert(key);
+  return keys;
+}
+
+/// Whether only the variants differ; which IMU is used belongs to a variant.
+bool only_variant(const run_files::RunIdentity& a, const run_files::RunIdentity& b) {
+  return a.variant != b.variant && std::tie(a.recording, a.options, a.first_frame, a.frames) ==
+                                       std::tie(b.recording, b.options, b.first_frame, b.frames);
 }
 
 }  // namespace
@@ -219,6 +224,39 @@ std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base, std::vecto
   }
   set_labels(pairs);
   return pairs;
+}
+
+std::vector<std::string> unpaired_notes(std::span<const RunPair> pairs) {
+  std::set<std::string> keys;
+  std::set<std::string> variants;
+  for (const RunPair& base : pairs) {
+    if (!base.fresh.empty()) continue;
+    std::optional<std::set<std::string>> fewest;
+    std::set<std::string> others;
+    for (const RunPair& fresh : pairs) {
+      if (!fresh.base.empty()) continue;
+      auto differing = only_options(base.experiment, fresh.experiment);
+      if (differing && (!fewest || differing->size() < fewest->size())) fewest = std::move(differing);
+      if (only_variant(base.experiment, fresh.experiment))
+        others.insert(fmt::format("{} and {}", base.experiment.variant, fresh.experiment.variant));
+    }
+    if (fewest) {
+      keys.merge(*fewest);
+    } else {
+      variants.merge(others);
+    }
+  }
+  std::vector<std::string> notes;
+  if (!keys.empty())
+    notes.push_back(
+        fmt::format("runs of BASE and NEW differ only in options: {}; --ignore-options {} pairs them",
+                    fmt::join(keys, ", "), fmt::join(keys, " --ignore-options ")));
+  if (!variants.empty())
+    notes.push_back(
+        fmt::format("runs of BASE and NEW differ only in the variant ({}): `compare` pairs runs of equal "
+                    "variants; `fusebench best` and `fusebench report` compare the variants of one folder",
+                    fmt::join(variants, ", ")));
+  return notes;
 }
 
 }  // namespace fusebench::compare

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,11 +53,14 @@ struct RunPair {
 
 /// Every run is in one pair, of which a side may be empty. A run that failed before its recording was open
 /// does not know its frames: it goes to the only pair of its recording, variant and options, if there is one.
-/// A run whose record is damaged does not know its options either: it goes to that of its folder's name
-/// first. So does a run over other images of as many or as few frames. By recording, then variant in the
-/// order of all_variants().
+/// So does a run over other images of as many or as few frames. By recording, then variant in the order of
+/// all_variants().
 [[nodiscard]] std::vector<RunPair> pair_runs(std::vector<run_files::FoundRun> base,
                                              std::vector<run_files::FoundRun> fresh,
                                              const IgnoredOptions& ignored = {});
+
+/// Sentences about runs without a counterpart: which options alone, or which variants alone, tell runs of
+/// BASE from runs of NEW, and how these can be compared. At most one of each kind.
+[[nodiscard]] std::vector<std::string> unpaired_notes(std::span<const RunPair> pairs);
 
 }  // namespace fusebench::compare

@@ -122,13 +122,8 @@ std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
     if (numbers_of(base, quantity).empty() || numbers_of(fresh, quantity).empty()) continue;
     const TimedTest test = test_of(base, fresh, quantity, gates);
     const double factor = gates.factor(i, pair.experiment.recording, pair.experiment.variant);
-    GateResult result{std::string(quantity.key),
-                      GateVerdict::unchanged,
-                      false,
-                      {},
-                      std::string(quantity.unit),
-                      test.base,
-                      test.fresh};
+    GateResult result =
+        number_gate(quantity, {factor - 1, 0, registry::Better::smaller}, test.base, test.fresh);
     const std::string change = fmt::format("{:.6g} {} -> {:.6g} {} (ratio {:.3f})", test.base, quantity.unit,
                                            test.fresh, quantity.unit, test.ratio());
     if (!test.gated) {

@@ -17,7 +17,7 @@ class RunNumbers;
 enum class Better {
   smaller,
   larger,
-  neither,  ///< every change counts as a regression
+  neither,  ///< every change fails its gate
 };
 [[nodiscard]] std::string_view to_string(Better better);  ///< "smaller", "larger", "equal"
 

@@ -75,20 +75,21 @@ Result<int> compare(const CompareOptions& options) {
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
   progress.say("comparing runs");
-  const compare::RunComparison comparison =
+  const auto comparison =
       compare::compare_runs(std::move(*base), std::move(*fresh), *gates, *confirming, options.ignored);
+  if (!comparison) return tl::unexpected(comparison.error());
   // A file is no terminal, whatever standard output is.
   const std::size_t width =
       options.out.empty() ? console::table_width(options.width) : options.width.value_or(0);
-  const std::string text = compare::render_comparison(comparison, *format, options.all, width);
+  const std::string text = compare::render_comparison(*comparison, *format, options.all, width);
   if (options.out.empty()) {
     console::print_output(text);
   } else {
     if (auto written = text::write_text_file(options.out, text); !written)
       return tl::unexpected(written.error());
-    console::print_progress(compare::comparison_summary(comparison));
+    console::print_progress(compare::comparison_summary(*comparison));
   }
-  return comparison.passed() ? 0 : kExitGateFailed;
+  return comparison->passed() ? 0 : kExitGateFailed;
 }
 
 }  // namespace

@@ -89,7 +89,8 @@ class ComparisonTest : public testing::InTemporaryFolder {
       return runs ? *runs : std::vector<FoundRun>();
     };
     return compare_runs(found("base"), found("new"), gates,
-                        confirm ? found("again") : std::vector<FoundRun>());
+                        confirm ? found("again") : std::vector<FoundRun>())
+        .value();
   }
 
   /// BASE as it is, NEW with a change.
@@ -194,7 +195,8 @@ TEST_F(ComparisonTest, PairsRunsThatDifferInIgnoredOptions) {
   changed.metrics.ate.value->stats.rmse *= 2;
   add("new", changed);
   const auto compared = [&](const IgnoredOptions& ignored) {
-    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored);
+    return compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {}, ignored)
+        .value();
   };
   EXPECT_EQ(compared({}).runs.size(), 2U);
   EXPECT_EQ(compared({"iekf."}).runs.size(), 2U) << "another one differs, too";
@@ -217,7 +219,8 @@ TEST_F(ComparisonTest, AnIgnoredOptionMayBeSetOnOneSideOnly) {
   set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
   add("new", set);
   const auto compared = compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "new"), Gates(), {},
-                                     {"iekf.max_iterations"});
+                                     {"iekf.max_iterations"})
+                            .value();
   ASSERT_EQ(compared.runs.size(), 1U);
   EXPECT_TRUE(compared.passed());
   ASSERT_NE(gate(compared, "options"), nullptr);
@@ -237,11 +240,21 @@ TEST_F(ComparisonTest, WorseMetricIsARegressionAndBetterOneAnImprovement) {
   EXPECT_NE(gate(comparison, "ate_rmse_m")->message.find("+0.1 %"), std::string::npos);
   ASSERT_NE(gate(comparison, "aie_grey"), nullptr);
   EXPECT_EQ(gate(comparison, "aie_grey")->verdict, GateVerdict::improvement);
-  EXPECT_NE(gate(comparison, "aie_grey")->message.find("take NEW as the next BASE"), std::string::npos);
+  EXPECT_TRUE(comparison.notes.empty()) << "no next BASE after a regression: " << comparison.notes.front();
   Gates gates;
   gates.improvements_fail = false;
   comparison = compare(gates);
   EXPECT_EQ(comparison.failures(), 1U);
+}
+
+TEST_F(ComparisonTest, ANextBaseIsSuggestedOnceAndOnlyWithoutRegressions) {
+  const RunComparison better = compare_changed([](RunRecord& record) {
+    record.metrics.ate.value->stats.rmse *= 0.5;
+    record.metrics.aie.value->all.aie_grey *= 0.5;
+  });
+  EXPECT_EQ(better.count(GateVerdict::improvement), 2U);
+  ASSERT_EQ(better.notes.size(), 1U);
+  EXPECT_NE(better.notes[0].find("take NEW as the next BASE"), std::string::npos);
 }
 
 TEST_F(ComparisonTest, ADroppedFrameIsCaughtByFramesAndCoverage) {
@@ -254,9 +267,21 @@ TEST_F(ComparisonTest, ADroppedFrameIsCaughtByFramesAndCoverage) {
   EXPECT_EQ(gate(comparison, "coverage")->verdict, GateVerdict::regression);
 }
 
-TEST_F(ComparisonTest, AnyChangeOfTheModelIsARegression) {
-  EXPECT_EQ(gate(compare_changed([](RunRecord& r) { ++r.model.vertices; }), "model_vertices")->verdict,
-            GateVerdict::regression);
+TEST_F(ComparisonTest, ANumberWithoutADirectionIsChangedAndListedAfterRegressions) {
+  const RunComparison comparison = compare_changed([](RunRecord& r) {
+    ++r.model.vertices;
+    r.metrics.ate.value->stats.rmse *= 2;
+  });
+  ASSERT_NE(gate(comparison, "model_vertices"), nullptr);
+  EXPECT_EQ(gate(comparison, "model_vertices")->verdict, GateVerdict::changed);
+  EXPECT_TRUE(gate(comparison, "model_vertices")->fails);
+  EXPECT_TRUE(comparison_summary(comparison).starts_with("FAIL: 1 regression, 1 changed, 0 improvements, "));
+  const auto lines = comparison_lines(comparison, false);
+  ASSERT_GE(lines.size(), 2U);
+  EXPECT_EQ(lines[0].gate, "ate_rmse_m");
+  EXPECT_EQ(lines[1].gate, "model_vertices");
+  EXPECT_NE(comparison_text(comparison, false).find("\nCHANGED "), std::string::npos);
+  EXPECT_NE(comparison_junit(comparison).find("<failure type=\"CHANGED\""), std::string::npos);
 }
 
 TEST_F(ComparisonTest, ALostRunIsOneRegressionAndBackIsAnImprovement) {
@@ -269,7 +294,7 @@ TEST_F(ComparisonTest, ALostRunIsOneRegressionAndBackIsAnImprovement) {
   EXPECT_EQ(gate(comparison, "status")->message, "ok -> lost (lost at frame 3)");
   const auto base = find_runs(folder_ / "base");
   const auto fresh = find_runs(folder_ / "new");
-  const auto reversed = compare_runs(*fresh, *base, Gates());
+  const auto reversed = compare_runs(*fresh, *base, Gates()).value();
   EXPECT_EQ(gate(reversed, "status")->verdict, GateVerdict::improvement);
 }
 
@@ -294,6 +319,44 @@ TEST_F(ComparisonTest, AnOptionThatSomebodySetMakesAnotherExperiment) {
   EXPECT_EQ(comparison.runs[0].gates.front().message, "missing in NEW");
   EXPECT_EQ(comparison.runs[1].gates.front().verdict, GateVerdict::note);
   EXPECT_EQ(comparison.runs[1].runs.label, "fr1_rpy/full [iekf.max_iterations=8]");
+}
+
+TEST_F(ComparisonTest, OptionsInWhichUnpairedRunsDifferAreNamedOnce) {
+  for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
+    add("base", good_record(recording));
+    RunRecord set = good_record(recording);
+    set.config[0] = {"iekf.max_iterations", std::int64_t{3}, "--set"};
+    set.config[1].origin = "--set";
+    set.config[1].value = 0.02;
+    add("new", set);
+  }
+  const RunComparison comparison = compare();
+  EXPECT_FALSE(comparison.passed());
+  ASSERT_EQ(comparison.notes.size(), 1U);
+  EXPECT_EQ(
+      comparison.notes[0],
+      "runs of BASE and NEW differ only in options: iekf.max_iterations, tsdf.voxel_m; --ignore-options "
+      "iekf.max_iterations --ignore-options tsdf.voxel_m pairs them");
+}
+
+TEST_F(ComparisonTest, VariantsInWhichUnpairedRunsDifferAreNamedWithTheVerbsThatCompareThem) {
+  for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
+    RunRecord full = good_record(recording, "full");
+    full.recording.imu = "recorded";
+    add("base", full);
+    add("new", good_record(recording, "no-imu"));
+  }
+  const RunComparison comparison = compare();
+  ASSERT_EQ(comparison.notes.size(), 1U);
+  EXPECT_TRUE(comparison.notes[0].starts_with(
+      "runs of BASE and NEW differ only in the variant (full and no-imu): `compare` pairs"))
+      << comparison.notes[0];
+}
+
+TEST_F(ComparisonTest, UnpairedRunsOfOtherRecordingsHaveNoHint) {
+  add("base", good_record("fr1_rpy"));
+  add("new", good_record("fr1_xyz", "dm"));
+  EXPECT_TRUE(compare().notes.empty());
 }
 
 TEST_F(ComparisonTest, AMissingRunFailsAndANewOneDoesNot) {
@@ -395,25 +458,30 @@ TEST_F(ComparisonTest, ADamagedTrajectoryIsARegression) {
   EXPECT_NE(message.find("trajectory.tum:1"), std::string::npos) << message;
 }
 
-/// Of a sweep: which configuration it was of, only the name of its folder says.
-TEST_F(ComparisonTest, ARunWithADamagedRecordIsComparedWithTheOneOfItsFolder) {
-  for (const char* side : {"base", "new"}) {
-    for (const int iterations : {3, 4}) {
-      RunRecord record = good_record();
-      record.config.push_back({"iekf.max_iterations", std::int64_t{iterations}, "--set"});
-      write(fmt::format("{}/fr1_rpy/full/0123456{}/record.json", side, iterations), to_json(record));
-    }
+TEST_F(ComparisonTest, ADamagedRunOfEitherSideIsAnErrorThatNamesItsFile) {
+  add("base", good_record());
+  add("new", good_record());
+  write("new/r00/fr1_rpy/full/01234567/record.json", std::string(5000, '\0'));
+  const auto whole = *find_runs(folder_ / "base");
+  const auto damaged = *find_runs(folder_ / "new");
+  for (const auto& comparison : {compare_runs(whole, damaged, Gates()), compare_runs(damaged, whole, Gates()),
+                                 compare_runs(whole, whole, Gates(), damaged)}) {
+    ASSERT_FALSE(comparison.has_value());
+    EXPECT_EQ(comparison.error().code, ErrorCode::data_corrupt);
+    EXPECT_EQ(comparison.error().message,
+              (folder_ / "new/r00/fr1_rpy/full/01234567/record.json").string() +
+                  " is damaged: not JSON at byte 1 (zeros after a power cut?); run it again");
   }
-  write("new/fr1_rpy/full/01234564/record.json", std::string(5000, '\0'));
-  const RunComparison comparison = compare();
-  ASSERT_EQ(comparison.runs.size(), 2U);
-  EXPECT_TRUE(comparison.runs[0].gates.size() > 1);
-  const GateResult* status = gate(comparison, "status");
-  ASSERT_NE(status, nullptr);
-  EXPECT_TRUE(status->fails);
-  EXPECT_EQ(
-      status->message,
-      "ok -> failed (record.json is damaged: not JSON at byte 1 (zeros after a power cut?); run it again)");
+}
+
+TEST_F(ComparisonTest, ABaselineRunThatFailedWhenItWasMadeIsCompared) {
+  RunRecord failed = good_record();
+  failed.status = RunStatus::failed;
+  failed.reason = "no space left";
+  add("base", failed, "");
+  add("new", good_record());
+  ASSERT_NE(gate(compare(), "status"), nullptr);
+  EXPECT_EQ(gate(compare(), "status")->verdict, GateVerdict::improvement);
 }
 
 TEST_F(ComparisonTest, RepetitionsThatDifferAreARegression) {
@@ -451,7 +519,8 @@ TEST_F(ComparisonTest, WhatOnlyMakesPosesWrongFails) {
   add("new", with_truth(6, 1.2, 0.01));
   EXPECT_EQ(gate(compare(), "silent_failures")->verdict, GateVerdict::regression);
   add("new", with_truth(2, 0.6, 0.01));
-  EXPECT_EQ(gate(compare(), "nees_pose")->verdict, GateVerdict::regression);
+  EXPECT_EQ(gate(compare(), "nees_pose")->verdict, GateVerdict::changed);
+  EXPECT_TRUE(gate(compare(), "nees_pose")->fails);
   EXPECT_EQ(gate(compare(), "silent_failures"), nullptr);
   add("new", with_truth(2, 1.2, 0.02));
   EXPECT_EQ(gate(compare(), "ate_revised_m")->verdict, GateVerdict::regression);
@@ -520,7 +589,7 @@ TEST_F(ComparisonTest, AHundredComparisonsOfEqualRunsRaiseNoAlarm) {
     return repetitions;
   };
   for (int i = 0; i < 100; ++i) {
-    const auto comparison = compare_runs(group(), group(), Gates());
+    const auto comparison = compare_runs(group(), group(), Gates()).value();
     EXPECT_TRUE(comparison.passed()) << comparison_text(comparison, false);
   }
 }
@@ -571,7 +640,7 @@ TEST_F(ComparisonTest, NamesAreEscapedInEveryFormat) {
   auto base = *find_runs(folder_ / "base");
   auto fresh = *find_runs(folder_ / "new");
   for (auto* runs : {&base, &fresh}) runs->front().record.recording.name = name;
-  const auto comparison = compare_runs(base, fresh, Gates());
+  const auto comparison = compare_runs(base, fresh, Gates()).value();
   const std::string xml = comparison_junit(comparison);
   EXPECT_NE(xml.find("classname=\"a&lt;b&gt;&amp;&quot;c&quot;|`d`/full\""), std::string::npos) << xml;
   EXPECT_NE(xml.find("lost &lt;at&gt; &quot;frame&quot; &amp; | more\\x0A# EOF"), std::string::npos) << xml;
@@ -634,6 +703,13 @@ TEST_F(ComparisonTest, JsonHasEveryGate) {
   ASSERT_NE(ate, gates.end());
   EXPECT_EQ(ate->at("new"), 0.5);
   EXPECT_EQ(ate->at("unit"), "m");
+  EXPECT_EQ(ate->at("better"), "smaller");
+  const auto base = ate->at("base").get<double>();
+  EXPECT_DOUBLE_EQ(ate->at("tolerance").get<double>(), 1e-9 * base);
+  EXPECT_DOUBLE_EQ(ate->at("ratio").get<double>(), 0.5 / base);
+  const auto wall = std::ranges::find_if(gates, [](const auto& g) { return g.at("gate") == "wall_s"; });
+  ASSERT_NE(wall, gates.end());
+  EXPECT_DOUBLE_EQ(wall->at("tolerance").get<double>(), 2.5) << "factor 1.25 of 10 s";
   EXPECT_TRUE(json.at("runs").at(0).at("bit_identical").get<bool>());
   EXPECT_EQ(parse_comparison_format("pdf").error().code, ErrorCode::usage);
 }
