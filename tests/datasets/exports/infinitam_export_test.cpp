@@ -24,7 +24,7 @@ TEST_F(InfinitamExport, FramesAreStoredByTheirNumbers) {
   for (int k = 0; k < 3; ++k) {
     const RgbdFrame made = made_frame(8, 6, k);
     std::string color = "P6\n8 6\n255\n", depth = "P5\n8 6\n65535\n";
-    for (const Rgb& pixel : made.color.data) color += {char(pixel.r), char(pixel.g), char(pixel.b)};
+    for (const Rgb& pixel : made.color.data) color.append(pixel.begin(), pixel.end());
     for (const std::uint16_t value : testing::stored_depth(made, 1000, 32000).data)
       depth += {char(value / 256), char(value % 256)};
     EXPECT_EQ(testing::read_bytes(out_ / fmt::format("color/000{}.ppm", k)), color);
