@@ -141,7 +141,7 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const registry::
       "their means are of fewer recordings and do not compare.",
       metric.key));
   if (std::ranges::any_of(rows, [](const RunRow& row) { return !row.window.empty(); }))
-    notes.emplace_back("Of recordings of which several windows were run, each window is a recording here.");
+    notes.emplace_back("Of recordings of which parts were run, each window is a recording here.");
   std::vector<record::DataWords> words;
   for (const RunRow& row : rows) words.push_back({row.data, row.imu, row.truth});
   for (std::string& footnote : record::data_footnotes(words)) notes.push_back(std::move(footnote));
@@ -171,8 +171,14 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
   const auto kinds =
       recording_kinds(rows, request.group == "recording" ? KindsBy::data : KindsBy::data_and_imu);
   std::map<GroupKey, std::vector<const RunRow*>> members;
+  std::set<std::string> whole;  // recordings, whose parts are no further samples
   for (const RunRow& row : rows) {
-    if (row.attributable()) members[key_of(row, request.group, kinds.at(row.recording))].push_back(&row);
+    if (row.window.empty()) whole.insert(row.recording);
+  }
+  for (const RunRow& row : rows) {
+    const bool repeats = !row.window.empty() && whole.contains(row.recording);
+    const std::string kind = kinds.at(row.recording) + (repeats ? ", parts of recordings" : "");
+    if (row.attributable()) members[key_of(row, request.group, kind)].push_back(&row);
   }
   std::set<std::string> without_number;
   for (const auto& [key, runs] : members) {

@@ -35,11 +35,12 @@ std::vector<Window> windows_of(const Ranking& ranking, const tables::ResultTable
   return {windows.begin(), windows.end()};
 }
 
-std::string label_of(const std::vector<Window>& windows, const Window& window) {
+std::string label_of(const Window& window, const tables::ResultTable& table) {
   const auto& [name, first, frames] = window;
-  const auto same = [&](const Window& other) { return std::get<0>(other) == name; };
-  if (std::ranges::count_if(windows, same) < 2) return name;
-  return fmt::format("{} [{}:{}]", name, first, first + frames);
+  const auto row = std::ranges::find_if(table.rows, [&](const tables::TableRow& r) {
+    return Window(r.recording, r.first_frame, r.frames) == window;
+  });
+  return row == table.rows.end() ? name : row->recorded_part();
 }
 
 std::size_t place_of(const tables::TableRow& row, const std::vector<Window>& windows) {
@@ -116,7 +117,7 @@ std::vector<OverviewRow> overview_of(const Ranking& ranking, const tables::Resul
   }
   std::vector<OverviewRow> rows;
   for (std::size_t w = 0; w < windows.size(); ++w) {
-    OverviewRow row{label_of(windows, windows[w]), {}};
+    OverviewRow row{label_of(windows[w], table), {}};
     for (const Tally& tally : tallies[w]) row.cells.push_back(finished(tally));
     mark_best(row);
     rows.push_back(std::move(row));

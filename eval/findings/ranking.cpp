@@ -80,13 +80,19 @@ std::string data_of(const tables::TableRow& row, const tables::ResultTable& tabl
 }
 
 std::vector<Comparable> comparables_of(const run_files::RunSet& rows, const tables::ResultTable& table) {
-  const std::vector<std::string> windows = rows.window_labels();
   const std::set<std::string> sharing = recordings_with_shared_frames(rows);
   std::vector<Comparable> comparables;
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     comparables.push_back({data_of(table.rows[i], table),
-                           sharing.contains(table.rows[i].recording) ? windows[i] : std::string()});
+                           sharing.contains(table.rows[i].recording) ? table.rows[i].window : std::string()});
   return comparables;
+}
+
+/// Which frames of their recordings the rows are of: "frames 0:100"; empty: all.
+std::string frames_of(const tables::ResultTable& table, const std::vector<std::size_t>& members) {
+  std::set<std::string> windows;
+  for (const std::size_t i : members) windows.insert(table.rows[i].window);
+  return windows.size() == 1 ? *windows.begin() : "with parts of recordings";
 }
 
 /// What the runs are ranked by; null if none of them has such a number.
@@ -196,7 +202,7 @@ std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
       for (const auto& [recording, sum] : candidate.sums) recordings.insert(recording);
     }
     rank(candidates, recordings);
-    Ranking ranking{comparables[first].data, comparables[first].frames, metric, recordings.size(), {}};
+    Ranking ranking{comparables[first].data, frames_of(table, members), metric, recordings.size(), {}};
     for (Candidate& candidate : candidates)
       ranking.configurations.push_back(std::move(candidate.configuration));
     rankings.push_back(std::move(ranking));

@@ -31,7 +31,8 @@ struct RankedConfiguration {
 /// Over data of one kind, which alone can be compared.
 struct Ranking {
   std::string data;  ///< "recorded", "simulated"
-  /// "frames 0:100" where other windows of the recordings share frames with it; empty where none does.
+  /// "frames 0:100" of runs over that part of each recording, "with parts of recordings" where windows
+  /// differ; empty: over whole recordings.
   std::string frames;
   const registry::RunMetric* metric = nullptr;
   std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number

@@ -33,12 +33,11 @@ std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
 Pivot pivot_of(const ResultTable& table) {
   const run_files::RunSet rows(std::vector<run_files::RunIdentity>(table.rows.begin(), table.rows.end()));
   const std::vector<std::string> labels = rows.configuration_labels();
-  const std::vector<std::string> windows = rows.window_labels();
   Pivot pivot;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const TableRow& row = table.rows[i];
-    const std::string name = windows[i].empty() ? row.recording : row.recording + " " + windows[i];
+    const std::string name = row.recorded_part();
     const std::size_t line = place_in(names, name);
     const std::size_t method = place_in(pivot.methods, labels[i]);
     if (line == pivot.lines.size()) pivot.lines.push_back({name, {}});

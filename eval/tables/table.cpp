@@ -224,10 +224,12 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   const run_files::RunSet rows = rows_of(set, groups);
   const std::vector<std::string> labels = rows.labels();
   const std::vector<std::string> methods = rows.methods();
+  const std::vector<std::string> windows = rows.window_labels();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const run_files::FoundRun& first = runs[groups[i].front()];
     TableRow row = row_of(first, labels[i]);
     row.members = groups[i];
+    row.window = windows[i];
     if (row.members.size() > 1) add_replicates(runs, row);
     if (const auto note = record::clock_note(first.record))
       table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));

@@ -58,7 +58,7 @@ std::string status_cell(const TableRow& row) {
 }
 
 Cells shown_cells(const TableRow& row, bool with_replicates) {
-  Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
+  Cells cells = {row.recorded_part(), record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
                  status_cell(row)};
   for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, row));
   cells.push_back(fmt::format("{}/{}", row.tracked, row.total));

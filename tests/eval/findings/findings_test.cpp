@@ -219,13 +219,20 @@ TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
   runs_.back().record.recording.imu = "recorded";
   const auto found = rankings();
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].frames, "frames 0:5");
+  EXPECT_EQ(found[0].frames, "");  // the whole recording
+  EXPECT_EQ(found[1].frames, "frames 0:4");
   ASSERT_EQ(found[0].configurations.size(), 3U);
   EXPECT_EQ(found[0].configurations[0].label, "full");
   EXPECT_EQ(found[0].configurations[1].label, "dm synthetic IMU");
   EXPECT_EQ(found[0].configurations[2].label, "dm recorded IMU");
   ASSERT_EQ(found[1].configurations.size(), 1U);
   testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one real recording, frames 0:4");
+
+  add_run("b", "full", 0.01);  // a whole recording is compared with the others
+  EXPECT_EQ(rankings().at(0).recordings, 2U);
+  runs_ = {runs_.front()};
+  runs_.front().record.recording.whole_frames = 9;
+  testing::expect_contains(sentences_of(rankings().at(0)).front(), "one real recording, frames 0:5");
 
   runs_.clear();  // windows that share no frame are samples of the recording
   add_window("full", 0, 5, 0.01);
