@@ -65,13 +65,25 @@ std::string evidence_of(const Ranking& ranking) {
   return text;
 }
 
+/// Its label, with what makes its number one that does not compare: "full (20 % of its frames tracked)".
+std::string named(const RankedConfiguration& configuration, const Ranking& ranking) {
+  std::string caveats;
+  const bool sparse = std::ranges::any_of(ranking.configurations, [&](const RankedConfiguration& other) {
+    return configuration.tracked_share() < tables::kLeastCoverage * other.tracked_share();
+  });
+  if (sparse) caveats = fmt::format("{:.0f} % of its frames tracked", 100 * configuration.tracked_share());
+  if (configuration.contradicts_truth)
+    caveats += fmt::format("{}its poses contradict the ground truth", caveats.empty() ? "" : ", ");
+  return caveats.empty() ? configuration.label : fmt::format("{} ({})", configuration.label, caveats);
+}
+
 /// best: of the ranking, which others tie with.
 std::string tie_sentence(const Ranking& ranking, const std::string& name, const std::string& where) {
   const RankedConfiguration& best = ranking.configurations.front();
   std::vector<std::string> tied;
   for (const RankedConfiguration& configuration : ranking.configurations) {
     if (!configuration.mean.tied) continue;
-    std::string text = configuration.label;
+    std::string text = named(configuration, ranking);
     if (configuration.value) text += " " + shown(*ranking.metric, *configuration.value);
     tied.push_back(fmt::format("{}, {}", text, ratio_text(configuration.mean)));
   }
@@ -91,22 +103,22 @@ std::string best_sentence(const Ranking& ranking) {
   if (!ranking.frames.empty()) where += ", " + ranking.frames;
   if (!best.value) {
     return fmt::format("No configuration has an {} on all of {}; {} has it on most, {}.", name, where,
-                       best.label, best.recordings);
+                       named(best, ranking), best.recordings);
   }
   const std::string number = shown(*ranking.metric, *best.value) +
                              (ranking.recordings > 1 ? " (geometric mean over recordings)" : "");
   if (ranking.configurations.size() == 1) {
-    return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
-                       number, where);
+    return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", named(best, ranking),
+                       name, number, where);
   }
   const RankedConfiguration& second = ranking.configurations[1];
   if (second.mean.tied) return tie_sentence(ranking, name, where);
   if (!second.value) {
-    return fmt::format("{} alone has an {} on all of {}: {}. Next is {}, which has it on {}.", best.label,
-                       name, where, number, second.label, second.recordings);
+    return fmt::format("{} alone has an {} on all of {}: {}. Next is {}, which has it on {}.",
+                       named(best, ranking), name, where, number, named(second, ranking), second.recordings);
   }
-  return fmt::format("{} has the smallest {} on {}: {}, {}. Next is {} with {}, {}.{}", best.label, name,
-                     where, number, ratio_text(best.mean), second.label,
+  return fmt::format("{} has the smallest {} on {}: {}, {}. Next is {} with {}, {}.{}", named(best, ranking),
+                     name, where, number, ratio_text(best.mean), named(second, ranking),
                      shown(*ranking.metric, *second.value), ratio_text(second.mean), evidence_of(ranking));
 }
 

@@ -92,17 +92,25 @@ OverviewCell finished(const Tally& tally) {
   return cell;
 }
 
+/// A run that tracked few frames is never the best.
 void mark_best(OverviewRow& row) {
-  const OverviewCell* best = nullptr;
+  double most_tracked = 0;
   std::size_t numbers = 0;
   for (const OverviewCell& cell : row.cells) {
     if (!cell.value) continue;
     ++numbers;
-    if (best == nullptr || cell.value->median < best->value->median) best = &cell;
+    most_tracked = std::max(most_tracked, cell.tracked_share.value_or(0));
   }
   if (numbers < 2) return;
+  const auto compares = [&](const OverviewCell& cell) {
+    return cell.value && cell.tracked_share.value_or(0) >= tables::kLeastCoverage * most_tracked;
+  };
+  const OverviewCell* best = nullptr;
+  for (const OverviewCell& cell : row.cells) {
+    if (compares(cell) && (best == nullptr || cell.value->median < best->value->median)) best = &cell;
+  }
   const registry::MedianRange range = *best->value;
-  for (OverviewCell& cell : row.cells) cell.best = cell.value && cell.value->overlaps(range);
+  for (OverviewCell& cell : row.cells) cell.best = compares(cell) && cell.value->overlaps(range);
 }
 
 }  // namespace

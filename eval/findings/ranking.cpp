@@ -134,6 +134,9 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
     if (row.status != record::RunStatus::ok) continue;
     const auto value = row.numbers[metric];
     if (!value || !(*value > 0)) continue;
+    configuration.tracked += row.tracked;
+    configuration.frames += row.total;
+    configuration.contradicts_truth |= row.contradicts_truth;
     const Recording recording(row.recording, row.first_frame, row.frames);
     auto& [sum, count] = at->sums[recording];
     sum += *value;

@@ -26,6 +26,13 @@ struct RankedConfiguration {
   std::size_t recordings = 0;   ///< of those that it has a number of
   std::optional<double> value;  ///< SI, geometric mean; absent where it lacks a number that others have
   aggregate::RatioMean mean;    ///< to the smallest number of each recording
+  std::size_t tracked = 0;      ///< frames of the runs that have a number, of `frames`
+  std::size_t frames = 0;
+  bool contradicts_truth = false;  ///< any of these runs: record::noted_contradiction()
+
+  [[nodiscard]] double tracked_share() const {
+    return frames == 0 ? 0.0 : static_cast<double>(tracked) / static_cast<double>(frames);
+  }
 };
 
 /// Over data of one kind, which alone can be compared.

@@ -233,8 +233,10 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
     if (row.members.size() > 1) add_replicates(runs, row);
     if (const auto note = record::clock_note(first.record))
       table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
-    if (const auto note = record::noted_contradiction(first.record))
-      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
+    const auto contradiction = record::noted_contradiction(first.record);
+    row.contradicts_truth = contradiction.has_value();
+    if (contradiction)
+      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *contradiction));
     if (row.status != record::RunStatus::ok)
       table.notes.push_back(
           fmt::format("{}, {}: {}: {}", row.recording, row.label, record::to_string(row.status), row.reason));

@@ -19,6 +19,10 @@
 
 namespace fusebench::tables {
 
+/// Errors of a run that tracked less than this share of the frames of another run are of an easier part of
+/// the recording.
+inline constexpr double kLeastCoverage = 0.9;
+
 /// One run, or the replicates of one, with the identity of the first.
 struct TableRow : run_files::RunIdentity {
   std::vector<std::size_t> members = {};              ///< indices of its runs
@@ -33,7 +37,11 @@ struct TableRow : run_files::RunIdentity {
   std::optional<std::size_t> silent;  ///< undetected failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
+  bool contradicts_truth = false;  ///< record::noted_contradiction()
 
+  [[nodiscard]] double tracked_share() const {
+    return total == 0 ? 0.0 : static_cast<double>(tracked) / static_cast<double>(total);
+  }
   /// "desk" or "desk frames 0:100".
   [[nodiscard]] std::string recorded_part() const {
     return window.empty() ? recording : recording + " " + window;

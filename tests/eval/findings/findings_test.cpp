@@ -58,6 +58,20 @@ TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
   EXPECT_FALSE(found[0].configurations[1].mean.interval.has_value());
 }
 
+TEST_F(FindingsTest, ARunThatTrackedFewFramesIsNotTheSmallestWithoutItsShare) {
+  add_run("a", "full", 0.01);
+  add_run("a", "dm", 0.005);
+  runs_[1].record.frames = {100, 20, 80};
+  runs_[1].record.recording.notes = {"warning: the poses contradict the ground truth: ATE 0.85 m"};
+  const auto found = rankings();
+  testing::expect_contains(sentences_of(found.at(0)).front(),
+                           "dm (20 % of its frames tracked, its poses contradict the ground truth) has the "
+                           "smallest ATE on one real recording");
+  const auto overview = overview_of(found[0], tables::table_of(runs_));
+  EXPECT_FALSE(overview.at(0).cells.at(0).best) << "dm";
+  EXPECT_TRUE(overview[0].cells.at(1).best);
+}
+
 TEST_F(FindingsTest, NamesATieOfEqualNumbers) {
   add_run("a", "full", 0.01);
   add_run("a", "dm", 0.01);
