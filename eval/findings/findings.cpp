@@ -1,13 +1,9 @@
 #include "eval/findings/findings.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "eval/metrics/statistics.hpp"
@@ -122,12 +118,6 @@ std::string best_sentence(const Ranking& ranking) {
                      shown(*ranking.metric, *second.value), ratio_text(second.mean), evidence_of(ranking));
 }
 
-std::string moment(std::filesystem::file_time_type time) {
-  const auto seconds =
-      std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(time)).time_since_epoch();
-  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(seconds.count())));
-}
-
 /// Beyond, the error of the rest is no longer that of the recording.
 constexpr double kTellingLostShare = 0.05;
 
@@ -228,7 +218,6 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
 std::string origin_of(std::span<const run_files::FoundRun> runs) {
   std::vector<std::string> programs;
   std::vector<std::string> machines;
-  std::optional<std::filesystem::file_time_type> first, last;
   for (const run_files::FoundRun& run : runs) {
     const record::RecordedProvenance& p = run.record.provenance;
     if (run.state == run_files::RunState::whole && !p.version.empty()) {
@@ -236,21 +225,9 @@ std::string origin_of(std::span<const run_files::FoundRun> runs) {
       add_once(machines, fmt::format("{}{} ({})", p.host.empty() ? "" : p.host + ", ", p.cpu,
                                      counted(static_cast<std::size_t>(std::max(p.threads, 0)), "thread")));
     }
-    std::error_code unknown;
-    const auto time = std::filesystem::last_write_time(run.folder / "record.json", unknown);
-    if (unknown) continue;
-    first = first ? std::min(*first, time) : time;
-    last = last ? std::max(*last, time) : time;
   }
-  std::string text = programs.empty()
-                         ? "The records do not name the program that made these runs"
-                         : fmt::format("Made by {} on {}", list_of(programs, ", "), list_of(machines, "; "));
-  if (first) {
-    text += "; records written " + moment(*first);
-    if (moment(*last) != moment(*first)) text += " to " + moment(*last);
-    text += " UTC";
-  }
-  return text + ".";
+  if (programs.empty()) return "The records do not name the program that made these runs.";
+  return fmt::format("Made by {} on {}.", list_of(programs, ", "), list_of(machines, "; "));
 }
 
 }  // namespace fusebench::findings

@@ -21,7 +21,7 @@ namespace fusebench::findings {
 /// nothing did.
 [[nodiscard]] std::vector<std::string> failures_of(const tables::ResultTable& table);
 
-/// Versions, machines, threads, and when the records were written (UTC, by their files).
+/// Versions, machines and threads.
 [[nodiscard]] std::string origin_of(std::span<const run_files::FoundRun> runs);
 
 }  // namespace fusebench::findings
