@@ -96,7 +96,7 @@ std::string best_sentence(const Ranking& ranking) {
   std::string where = ranking.recordings == 1
                           ? fmt::format("one {} recording", ranking.data_word())
                           : fmt::format("{} {} recordings", ranking.recordings, ranking.data_word());
-  if (!ranking.frames.empty()) where += ", " + ranking.frames;
+  where += ranking.restrictions();
   if (!best.value) {
     return fmt::format("No configuration has an {} on all of {}; {} has it on most, {}.", name, where,
                        named(best, ranking), best.recordings);
@@ -133,25 +133,9 @@ void add_once(std::vector<std::string>& list, const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> sentences_of(const Ranking& ranking) {
-  std::vector<std::string> sentences;
-  if (ranking.configurations.empty() || ranking.recordings == 0) return sentences;
-  sentences.push_back(best_sentence(ranking));
-  std::vector<std::string> helped;
-  std::size_t others = 0;
-  for (const RankedConfiguration& configuration : ranking.configurations) {
-    if (configuration.imu_from_truth) {
-      add_once(helped, configuration.variant);
-    } else {
-      ++others;
-    }
-  }
-  if (!helped.empty() && others > 0) {
-    sentences.push_back(
-        fmt::format("The IMU of {} was made from the ground truth, so that {} smaller than with a real IMU.",
-                    list_of(helped, ", "), helped.size() == 1 ? "its error is" : "their errors are"));
-  }
-  return sentences;
+std::optional<std::string> sentence_of(const Ranking& ranking) {
+  if (ranking.configurations.empty() || ranking.recordings == 0) return std::nullopt;
+  return best_sentence(ranking);
 }
 
 std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs) {

@@ -47,8 +47,7 @@ page::PageSection findings_section(const std::vector<run_files::FoundRun>& runs,
                                    const std::vector<findings::Ranking>& rankings) {
   page::PageParagraphs paragraphs;
   for (const findings::Ranking& ranking : rankings) {
-    for (std::string& sentence : findings::sentences_of(ranking))
-      paragraphs.lines.push_back(std::move(sentence));
+    if (auto sentence = findings::sentence_of(ranking)) paragraphs.lines.push_back(std::move(*sentence));
   }
   if (auto sentence = findings::final_poses_of(runs)) paragraphs.lines.push_back(std::move(*sentence));
   for (std::string& sentence : findings::failures_of(table)) paragraphs.lines.push_back(std::move(sentence));
@@ -89,10 +88,9 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
       ranking.recordings, ranking.data_word(), ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
-  const std::string frames = ranking.frames.empty() ? "" : ", " + ranking.frames;
-  return {
-      only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data_word(), frames),
-      std::move(text), std::move(table), 3, true};
+  return {only ? "What was compared"
+               : fmt::format("What was compared: {} data{}", ranking.data_word(), ranking.restrictions()),
+          std::move(text), std::move(table), 3, true};
 }
 
 /// The table of systems and how to read it, where it says more than the table of runs.
