@@ -86,6 +86,14 @@ std::string ratio_text(const RatioMean& ratio) {
   return fmt::format("{:.2f} times the best of each recording ({})", ratio.ratio.value_or(1), interval);
 }
 
+/// What a number does not show of an order of several configurations; empty: nothing.
+std::string caveat_of(const BestGroup& group, const registry::RunMetric& metric) {
+  if (metric.key != "aie_grey" || group.rows.size() < 2) return "";
+  return " An AIE is of the pixels that a configuration tracked: configurations that track other pixels do "
+         "not "
+         "compare. `fusebench table` has the AIE on common pixels.";
+}
+
 /// rows: ranked, all of them.
 std::string headline_of(const BestGroup& group, const registry::RunMetric& metric) {
   constexpr std::size_t kMostNamed = 6;
@@ -190,7 +198,7 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
       group.rows.push_back({std::nullopt, std::move(summary)});
     group.configurations = group.rows.size();
     rank(group.rows);
-    group.headline = headline_of(group, *request.metric);
+    group.headline = headline_of(group, *request.metric) + caveat_of(group, *request.metric);
     if (request.most > 0 && group.rows.size() > request.most)
       group.rows.erase(group.rows.begin() + static_cast<std::ptrdiff_t>(request.most), group.rows.end());
     table.groups.push_back(std::move(group));

@@ -147,6 +147,17 @@ TEST(Best, DataOfDifferentKindsAreNotInOneMean) {
   EXPECT_NE(render_best(table, BestFormat::markdown).find("simulated: images"), std::string::npos);
 }
 
+TEST(Best, AnOrderByIntensityErrorsSaysThatPixelsDiffer) {
+  std::vector<RunRow> rows = {sample_row("desk", {{"patches.size_px", "4"}}, 0.01),
+                              sample_row("desk", {{"patches.size_px", "8"}}, 0.01)};
+  const registry::RunMetric& aie = registry::run_metric("aie_grey");
+  rows[0].numbers.set(aie, 5);
+  rows[1].numbers.set(aie, 6);
+  const auto table = best_configurations(rows, {&aie});
+  ASSERT_TRUE(table.has_value());
+  EXPECT_NE(table->groups.at(0).headline.find("AIE on common pixels"), std::string::npos);
+}
+
 TEST(Best, WindowsAndImusAreNotAveragedButRepetitionsAre) {
   const auto run = [](std::size_t frames, std::size_t repetition, const char* imu, double ate_m) {
     RunRow row = sample_row("desk", {}, ate_m);
