@@ -38,7 +38,10 @@ page::PageTable page_table(const tables::ResultTable& table) {
 
 page::PageTable lines_table(const std::vector<std::string>& lines) {
   page::PageTable table;
-  for (const std::string& line : lines) table.rows.push_back({{line}, ""});
+  for (std::string line : lines) {
+    std::erase(line, '`');  // of Markdown
+    table.rows.push_back({{std::move(line)}, ""});
+  }
   return table;
 }
 

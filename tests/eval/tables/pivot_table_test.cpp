@@ -66,6 +66,9 @@ TEST_F(PivotTableTest, ChosenColumnsAloneAreInTheTableOfRuns) {
   const std::string latex = render_table(*table, TableFormat::latex, layout);
   EXPECT_NE(latex.find("status & ATE [cm] & tracked \\\\"), std::string::npos) << latex;
   EXPECT_NE(latex.find("\\textbf{1.23} &"), std::string::npos) << latex;
+  EXPECT_NE(latex.find("\nATE: rmse of positions"), std::string::npos) << latex;
+  EXPECT_EQ(latex.find("RPE:"), std::string::npos) << "a column that is not in the table";
+  EXPECT_EQ(latex.find("fps:"), std::string::npos) << latex;
   const auto unknown = check_latex_metrics({"ate"});
   ASSERT_FALSE(unknown.has_value());
   EXPECT_NE(unknown.error().message.find("ate_rmse_m"), std::string::npos) << unknown.error().message;
