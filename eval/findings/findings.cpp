@@ -61,7 +61,7 @@ std::string evidence_of(const Ranking& ranking) {
   return text;
 }
 
-/// Its label, with what makes its number one that does not compare: "full (20 % of its frames tracked)".
+/// Its label with the reasons why its number does not compare: "full (20 % of its frames tracked)".
 std::string named(const RankedConfiguration& configuration, const Ranking& ranking) {
   std::string caveats;
   const bool sparse = std::ranges::any_of(ranking.configurations, [&](const RankedConfiguration& other) {

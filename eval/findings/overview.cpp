@@ -1,7 +1,5 @@
 #include "eval/findings/overview.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <tuple>
