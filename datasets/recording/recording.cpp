@@ -55,6 +55,7 @@ Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t 
                 fmt::format("'{}' has {} frames; A:B takes frames A to B-1", recording.name, count));
   }
   if (begin == 0 && end == count) return {};
+  if (recording.whole_frames == 0) recording.whole_frames = count;
   const auto first = recording.frames.begin();
   recording.frames = {first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end)};
   recording.load_frame = [load_whole = std::move(recording.load_frame), begin](std::size_t frame) {

@@ -1,6 +1,7 @@
 // The one interface of all recordings: metadata, lists, and a function that loads one frame.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -49,7 +50,8 @@ struct Recording {
   bool simulated = false;   ///< made by a simulator: its truth and IMU are, too
   SensorRig rig;            ///< of the undistorted images
   std::vector<FrameEntry> frames;
-  std::vector<ImuSample> imu;  ///< empty if imu_source is none
+  std::size_t whole_frames = 0;  ///< of the whole recording where `frames` is a part of it; 0: it is not
+  std::vector<ImuSample> imu;    ///< empty if imu_source is none
   ImuSource imu_source = ImuSource::none;
   std::string imu_note;  ///< for a synthetic IMU: how it was made (sensor, seed, fit residuals)
   std::vector<AccelerometerSample>

@@ -86,6 +86,14 @@ std::string ratio_text(const RatioMean& ratio) {
   return fmt::format("{:.2f} times the best of each recording ({})", ratio.ratio.value_or(1), interval);
 }
 
+/// What a number does not show of an order of several configurations; empty: nothing.
+std::string caveat_of(const BestGroup& group, const registry::RunMetric& metric) {
+  if (metric.key != "aie_grey" || group.rows.size() < 2) return "";
+  return " An AIE is of the pixels that a configuration tracked: configurations that track other pixels do "
+         "not "
+         "compare. `fusebench table` has the AIE on common pixels.";
+}
+
 /// rows: ranked, all of them.
 std::string headline_of(const BestGroup& group, const registry::RunMetric& metric) {
   constexpr std::size_t kMostNamed = 6;
@@ -141,7 +149,7 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const registry::
       "their means are of fewer recordings and do not compare.",
       metric.key));
   if (std::ranges::any_of(rows, [](const RunRow& row) { return !row.window.empty(); }))
-    notes.emplace_back("Of recordings of which several windows were run, each window is a recording here.");
+    notes.emplace_back("Of recordings of which parts were run, each window is a recording here.");
   std::vector<record::DataWords> words;
   for (const RunRow& row : rows) words.push_back({row.data, row.imu, row.truth});
   for (std::string& footnote : record::data_footnotes(words)) notes.push_back(std::move(footnote));
@@ -171,8 +179,14 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
   const auto kinds =
       recording_kinds(rows, request.group == "recording" ? KindsBy::data : KindsBy::data_and_imu);
   std::map<GroupKey, std::vector<const RunRow*>> members;
+  std::set<std::string> whole;  // recordings, whose parts are no further samples
   for (const RunRow& row : rows) {
-    if (row.attributable()) members[key_of(row, request.group, kinds.at(row.recording))].push_back(&row);
+    if (row.window.empty()) whole.insert(row.recording);
+  }
+  for (const RunRow& row : rows) {
+    const bool repeats = !row.window.empty() && whole.contains(row.recording);
+    const std::string kind = kinds.at(row.recording) + (repeats ? ", parts of recordings" : "");
+    if (row.attributable()) members[key_of(row, request.group, kind)].push_back(&row);
   }
   std::set<std::string> without_number;
   for (const auto& [key, runs] : members) {
@@ -184,7 +198,7 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
       group.rows.push_back({std::nullopt, std::move(summary)});
     group.configurations = group.rows.size();
     rank(group.rows);
-    group.headline = headline_of(group, *request.metric);
+    group.headline = headline_of(group, *request.metric) + caveat_of(group, *request.metric);
     if (request.most > 0 && group.rows.size() > request.most)
       group.rows.erase(group.rows.begin() + static_cast<std::ptrdiff_t>(request.most), group.rows.end());
     table.groups.push_back(std::move(group));

@@ -78,6 +78,7 @@ constexpr auto kIdentityFields = std::to_array<Field>({
     {"recording.truth", text<&RunRow::truth>},
     {"recording.first_frame", count<&RunRow::first_frame>},
     {"recording.frames", count<&RunRow::frames>},
+    {"recording.whole_frames", count<&RunRow::whole_frames>},
     {"recording.fingerprint", text<&RunRow::fingerprint>},
     {"variant", text<&RunRow::variant>, true},
     {"config_hash", text<&RunRow::config_hash>, true},
@@ -344,7 +345,7 @@ RunRow damaged_row(RunRow row, std::string reason) {
   row.options.clear();
   row.wrote_options = false;
   row.fingerprint = row.imu = "";
-  row.total = row.tracked = row.lost = row.first_frame = row.frames = 0;
+  row.total = row.tracked = row.lost = row.first_frame = row.frames = row.whole_frames = 0;
   row.repetition = 1;
   row.replicate = 0;
   return row;

@@ -27,7 +27,7 @@ inline constexpr std::string_view kUnsetOption = "unset";
 struct RunRow : run_files::RunIdentity {
   registry::RunNumbers numbers;
   std::string label;   ///< the variant with what distinguishes the run from others (RunSet::labels())
-  std::string window;  ///< "frames 0:100" where other frames of the recording were run as well
+  std::string window;  ///< "frames 0:100" of a run over a part of the recording
   std::string folder;  ///< relative to the root, with "/"
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;  ///< empty if ok

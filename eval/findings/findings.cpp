@@ -1,13 +1,9 @@
 #include "eval/findings/findings.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "eval/metrics/statistics.hpp"
@@ -65,13 +61,25 @@ std::string evidence_of(const Ranking& ranking) {
   return text;
 }
 
+/// Its label with the reasons why its number does not compare: "full (20 % of its frames tracked)".
+std::string named(const RankedConfiguration& configuration, const Ranking& ranking) {
+  std::string caveats;
+  const bool sparse = std::ranges::any_of(ranking.configurations, [&](const RankedConfiguration& other) {
+    return configuration.tracked_share() < tables::kLeastCoverage * other.tracked_share();
+  });
+  if (sparse) caveats = fmt::format("{:.0f} % of its frames tracked", 100 * configuration.tracked_share());
+  if (configuration.contradicts_truth)
+    caveats += fmt::format("{}its poses contradict the ground truth", caveats.empty() ? "" : ", ");
+  return caveats.empty() ? configuration.label : fmt::format("{} ({})", configuration.label, caveats);
+}
+
 /// best: of the ranking, which others tie with.
 std::string tie_sentence(const Ranking& ranking, const std::string& name, const std::string& where) {
   const RankedConfiguration& best = ranking.configurations.front();
   std::vector<std::string> tied;
   for (const RankedConfiguration& configuration : ranking.configurations) {
     if (!configuration.mean.tied) continue;
-    std::string text = configuration.label;
+    std::string text = named(configuration, ranking);
     if (configuration.value) text += " " + shown(*ranking.metric, *configuration.value);
     tied.push_back(fmt::format("{}, {}", text, ratio_text(configuration.mean)));
   }
@@ -88,32 +96,26 @@ std::string best_sentence(const Ranking& ranking) {
   std::string where = ranking.recordings == 1
                           ? fmt::format("one {} recording", ranking.data_word())
                           : fmt::format("{} {} recordings", ranking.recordings, ranking.data_word());
-  if (!ranking.frames.empty()) where += ", " + ranking.frames;
+  where += ranking.restrictions();
   if (!best.value) {
     return fmt::format("No configuration has an {} on all of {}; {} has it on most, {}.", name, where,
-                       best.label, best.recordings);
+                       named(best, ranking), best.recordings);
   }
   const std::string number = shown(*ranking.metric, *best.value) +
                              (ranking.recordings > 1 ? " (geometric mean over recordings)" : "");
   if (ranking.configurations.size() == 1) {
-    return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
-                       number, where);
+    return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", named(best, ranking),
+                       name, number, where);
   }
   const RankedConfiguration& second = ranking.configurations[1];
   if (second.mean.tied) return tie_sentence(ranking, name, where);
   if (!second.value) {
-    return fmt::format("{} alone has an {} on all of {}: {}. Next is {}, which has it on {}.", best.label,
-                       name, where, number, second.label, second.recordings);
+    return fmt::format("{} alone has an {} on all of {}: {}. Next is {}, which has it on {}.",
+                       named(best, ranking), name, where, number, named(second, ranking), second.recordings);
   }
-  return fmt::format("{} has the smallest {} on {}: {}, {}. Next is {} with {}, {}.{}", best.label, name,
-                     where, number, ratio_text(best.mean), second.label,
+  return fmt::format("{} has the smallest {} on {}: {}, {}. Next is {} with {}, {}.{}", named(best, ranking),
+                     name, where, number, ratio_text(best.mean), named(second, ranking),
                      shown(*ranking.metric, *second.value), ratio_text(second.mean), evidence_of(ranking));
-}
-
-std::string moment(std::filesystem::file_time_type time) {
-  const auto seconds =
-      std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(time)).time_since_epoch();
-  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(seconds.count())));
 }
 
 /// Beyond, the error of the rest is no longer that of the recording.
@@ -131,25 +133,9 @@ void add_once(std::vector<std::string>& list, const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> sentences_of(const Ranking& ranking) {
-  std::vector<std::string> sentences;
-  if (ranking.configurations.empty() || ranking.recordings == 0) return sentences;
-  sentences.push_back(best_sentence(ranking));
-  std::vector<std::string> helped;
-  std::size_t others = 0;
-  for (const RankedConfiguration& configuration : ranking.configurations) {
-    if (configuration.imu_from_truth) {
-      add_once(helped, configuration.variant);
-    } else {
-      ++others;
-    }
-  }
-  if (!helped.empty() && others > 0) {
-    sentences.push_back(
-        fmt::format("The IMU of {} was made from the ground truth, so that {} smaller than with a real IMU.",
-                    list_of(helped, ", "), helped.size() == 1 ? "its error is" : "their errors are"));
-  }
-  return sentences;
+std::optional<std::string> sentence_of(const Ranking& ranking) {
+  if (ranking.configurations.empty() || ranking.recordings == 0) return std::nullopt;
+  return best_sentence(ranking);
 }
 
 std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs) {
@@ -216,7 +202,6 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
 std::string origin_of(std::span<const run_files::FoundRun> runs) {
   std::vector<std::string> programs;
   std::vector<std::string> machines;
-  std::optional<std::filesystem::file_time_type> first, last;
   for (const run_files::FoundRun& run : runs) {
     const record::RecordedProvenance& p = run.record.provenance;
     if (run.state == run_files::RunState::whole && !p.version.empty()) {
@@ -224,21 +209,9 @@ std::string origin_of(std::span<const run_files::FoundRun> runs) {
       add_once(machines, fmt::format("{}{} ({})", p.host.empty() ? "" : p.host + ", ", p.cpu,
                                      counted(static_cast<std::size_t>(std::max(p.threads, 0)), "thread")));
     }
-    std::error_code unknown;
-    const auto time = std::filesystem::last_write_time(run.folder / "record.json", unknown);
-    if (unknown) continue;
-    first = first ? std::min(*first, time) : time;
-    last = last ? std::max(*last, time) : time;
   }
-  std::string text = programs.empty()
-                         ? "The records do not name the program that made these runs"
-                         : fmt::format("Made by {} on {}", list_of(programs, ", "), list_of(machines, "; "));
-  if (first) {
-    text += "; records written " + moment(*first);
-    if (moment(*last) != moment(*first)) text += " to " + moment(*last);
-    text += " UTC";
-  }
-  return text + ".";
+  if (programs.empty()) return "The records do not name the program that made these runs.";
+  return fmt::format("Made by {} on {}.", list_of(programs, ", "), list_of(machines, "; "));
 }
 
 }  // namespace fusebench::findings

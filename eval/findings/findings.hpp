@@ -10,9 +10,9 @@
 
 namespace fusebench::findings {
 
-/// Which configuration is best or which tie, by their mean ratios to the best of each recording; then which
-/// poses come with an IMU made from the ground truth. Nothing of runs without numbers.
-[[nodiscard]] std::vector<std::string> sentences_of(const Ranking& ranking);
+/// Which configuration is best or which tie, by their mean ratios to the best of each recording. Nothing of
+/// runs without numbers.
+[[nodiscard]] std::optional<std::string> sentence_of(const Ranking& ranking);
 
 /// Where loops were closed: the ATE of final poses against that of online poses. Nothing if no run has both.
 [[nodiscard]] std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs);
@@ -21,7 +21,7 @@ namespace fusebench::findings {
 /// nothing did.
 [[nodiscard]] std::vector<std::string> failures_of(const tables::ResultTable& table);
 
-/// Versions, machines, threads, and when the records were written (UTC, by their files).
+/// Versions, machines and threads.
 [[nodiscard]] std::string origin_of(std::span<const run_files::FoundRun> runs);
 
 }  // namespace fusebench::findings

@@ -1,7 +1,5 @@
 #include "eval/findings/overview.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -35,11 +33,12 @@ std::vector<Window> windows_of(const Ranking& ranking, const tables::ResultTable
   return {windows.begin(), windows.end()};
 }
 
-std::string label_of(const std::vector<Window>& windows, const Window& window) {
+std::string label_of(const Window& window, const tables::ResultTable& table) {
   const auto& [name, first, frames] = window;
-  const auto same = [&](const Window& other) { return std::get<0>(other) == name; };
-  if (std::ranges::count_if(windows, same) < 2) return name;
-  return fmt::format("{} [{}:{}]", name, first, first + frames);
+  const auto row = std::ranges::find_if(table.rows, [&](const tables::TableRow& r) {
+    return Window(r.recording, r.first_frame, r.frames) == window;
+  });
+  return row == table.rows.end() ? name : row->recorded_part();
 }
 
 std::size_t place_of(const tables::TableRow& row, const std::vector<Window>& windows) {
@@ -91,17 +90,25 @@ OverviewCell finished(const Tally& tally) {
   return cell;
 }
 
+/// A run that tracked few frames is never the best.
 void mark_best(OverviewRow& row) {
-  const OverviewCell* best = nullptr;
+  double most_tracked = 0;
   std::size_t numbers = 0;
   for (const OverviewCell& cell : row.cells) {
     if (!cell.value) continue;
     ++numbers;
-    if (best == nullptr || cell.value->median < best->value->median) best = &cell;
+    most_tracked = std::max(most_tracked, cell.tracked_share.value_or(0));
   }
   if (numbers < 2) return;
+  const auto compares = [&](const OverviewCell& cell) {
+    return cell.value && cell.tracked_share.value_or(0) >= tables::kLeastCoverage * most_tracked;
+  };
+  const OverviewCell* best = nullptr;
+  for (const OverviewCell& cell : row.cells) {
+    if (compares(cell) && (best == nullptr || cell.value->median < best->value->median)) best = &cell;
+  }
   const registry::MedianRange range = *best->value;
-  for (OverviewCell& cell : row.cells) cell.best = cell.value && cell.value->overlaps(range);
+  for (OverviewCell& cell : row.cells) cell.best = compares(cell) && cell.value->overlaps(range);
 }
 
 }  // namespace
@@ -116,7 +123,7 @@ std::vector<OverviewRow> overview_of(const Ranking& ranking, const tables::Resul
   }
   std::vector<OverviewRow> rows;
   for (std::size_t w = 0; w < windows.size(); ++w) {
-    OverviewRow row{label_of(windows, windows[w]), {}};
+    OverviewRow row{label_of(windows[w], table), {}};
     for (const Tally& tally : tallies[w]) row.cells.push_back(finished(tally));
     mark_best(row);
     rows.push_back(std::move(row));

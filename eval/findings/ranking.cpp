@@ -48,6 +48,7 @@ std::string description_of(const record::RunRecord& record) {
 /// What alone can be compared.
 struct Comparable {
   std::string data;
+  bool synthetic_imu = false;
   std::string frames;  ///< of Ranking
   bool operator==(const Comparable&) const = default;
 };
@@ -80,13 +81,20 @@ std::string data_of(const tables::TableRow& row, const tables::ResultTable& tabl
 }
 
 std::vector<Comparable> comparables_of(const run_files::RunSet& rows, const tables::ResultTable& table) {
-  const std::vector<std::string> windows = rows.window_labels();
   const std::set<std::string> sharing = recordings_with_shared_frames(rows);
+  const std::vector<std::string> imus = rows.imus();
   std::vector<Comparable> comparables;
   for (std::size_t i = 0; i < table.rows.size(); ++i)
-    comparables.push_back({data_of(table.rows[i], table),
-                           sharing.contains(table.rows[i].recording) ? windows[i] : std::string()});
+    comparables.push_back({data_of(table.rows[i], table), imus[i] == "synthetic IMU",
+                           sharing.contains(table.rows[i].recording) ? table.rows[i].window : std::string()});
   return comparables;
+}
+
+/// Which frames of their recordings the rows are of: "frames 0:100"; empty: all.
+std::string frames_of(const tables::ResultTable& table, const std::vector<std::size_t>& members) {
+  std::set<std::string> windows;
+  for (const std::size_t i : members) windows.insert(table.rows[i].window);
+  return windows.size() == 1 ? *windows.begin() : "with parts of recordings";
 }
 
 /// What the runs are ranked by; null if none of them has such a number.
@@ -123,11 +131,13 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
     RankedConfiguration& configuration = at->configuration;
     configuration.rows.push_back(i);
     configuration.runs += row.members.size();
-    configuration.imu_from_truth |= row.imu == "synthetic IMU";
     configuration.ok += row.ok_members;
     if (row.status != record::RunStatus::ok) continue;
     const auto value = row.numbers[metric];
     if (!value || !(*value > 0)) continue;
+    configuration.tracked += row.tracked;
+    configuration.frames += row.total;
+    configuration.contradicts_truth |= row.contradicts_truth;
     const Recording recording(row.recording, row.first_frame, row.frames);
     auto& [sum, count] = at->sums[recording];
     sum += *value;
@@ -196,7 +206,9 @@ std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
       for (const auto& [recording, sum] : candidate.sums) recordings.insert(recording);
     }
     rank(candidates, recordings);
-    Ranking ranking{comparables[first].data, comparables[first].frames, metric, recordings.size(), {}};
+    Ranking ranking{comparables[first].data,   comparables[first].synthetic_imu,
+                    frames_of(table, members), metric,
+                    recordings.size(),         {}};
     for (Candidate& candidate : candidates)
       ranking.configurations.push_back(std::move(candidate.configuration));
     rankings.push_back(std::move(ranking));

@@ -83,7 +83,7 @@ std::string results_of(std::span<const run_charts::RunSeries> series) {
       text += fmt::format("ATE {:.2f} cm, ", 100 * record.metrics.ate.value->stats.rmse);
     text += fmt::format("{} of {} frames tracked", record.frames.tracked, record.frames.total);
     if (const auto silent = record.metrics.silent_frames(); silent.value_or(0) > 0)
-      text += fmt::format(", {} undetected failures", *silent);
+      text += fmt::format(", {} undetected failure{}", *silent, *silent == 1 ? "" : "s");
   }
   return text + ".";
 }

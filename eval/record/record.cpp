@@ -34,6 +34,7 @@ Json json_of(const RecordedRecording& recording) {
                {"truth", recording.truth},
                {"prepared", recording.prepared},
                {"notes", recording.notes}};
+  if (recording.whole_frames > 0) json["whole_frames"] = recording.whole_frames;
   if (recording.start_ns) json["start_ns"] = *recording.start_ns;
   if (recording.camera) json["camera"] = json_of_camera(*recording.camera);
   return json;
@@ -45,6 +46,7 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.data = json.at("data");
   recording.frames = json.at("frames");
   recording.first_frame = json.at("first_frame");
+  recording.whole_frames = json.value("whole_frames", std::size_t{0});
   recording.duration_s = json.at("duration_s");
   recording.fingerprint = json.at("fingerprint");
   recording.imu = json.at("imu");

@@ -53,7 +53,8 @@ RecordedRecording recorded_recording(const recording::Recording& recording,
           .truth = std::string(truth_word(recording)),
           .notes = reading_notes(recording, folder),
           .camera = recorded_camera(recording),
-          .start_ns = recording.frames.front().timestamp_ns};
+          .start_ns = recording.frames.front().timestamp_ns,
+          .whole_frames = recording.whole_frames};
 }
 
 RecordedProvenance provenance_here(int threads) {

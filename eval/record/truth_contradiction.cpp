@@ -14,6 +14,10 @@ constexpr std::string_view kContradiction = "the poses contradict the ground tru
 constexpr double kMostError = 0.5;      // of the extent: a quarter of the variance
 constexpr double kLeastExtent_m = 0.1;  // smaller motions and their errors are of one size
 constexpr std::size_t kLeastPoses = 10;
+constexpr std::string_view kCheckRecording = "`fusebench inspect` on the recording looks for the reason";
+constexpr std::string_view kCheckPoses =
+    "check the scale of the trajectory (`fusebench eval ate --align sim3`), the direction of its poses "
+    "(`fusebench import --pose world_to_camera`) and its clock (`fusebench eval ate --fit-time-offset`)";
 
 /// rms distance of the positions from their mean.
 double extent_m(const Trajectory& trajectory) {
@@ -34,7 +38,7 @@ std::optional<double> ate_rmse_m(const RecordedMetrics& metrics) {
 }  // namespace
 
 std::optional<std::string> truth_contradiction(const Trajectory& truth, const Trajectory& estimate,
-                                               std::optional<double> ate_rmse_m) {
+                                               std::optional<double> ate_rmse_m, bool foreign) {
   if (std::min(truth.size(), estimate.size()) < kLeastPoses) return std::nullopt;
   const double true_m = extent_m(truth), estimated_m = extent_m(estimate);
   const double error_m = ate_rmse_m.value_or(std::abs(estimated_m - true_m));
@@ -42,8 +46,8 @@ std::optional<std::string> truth_contradiction(const Trajectory& truth, const Tr
   const std::string measured = ate_rmse_m ? fmt::format("ATE {:.2f} m, and ", *ate_rmse_m) : "";
   return fmt::format(
       "{}{}its positions are within {:.2f} m (rms) of their mean, those of the run within {:.2f} "
-      "m; `fusebench inspect` on the recording looks for the reason",
-      kContradiction, measured, true_m, estimated_m);
+      "m; {}",
+      kContradiction, measured, true_m, estimated_m, foreign ? kCheckPoses : kCheckRecording);
 }
 
 void note_contradiction(RunRecord& record, const Trajectory& truth, const Trajectory& estimate) {
@@ -51,7 +55,8 @@ void note_contradiction(RunRecord& record, const Trajectory& truth, const Trajec
   std::optional<double> error_m = ate_rmse_m(record.metrics);
   if (const auto final_m = record.final_metrics ? ate_rmse_m(*record.final_metrics) : std::nullopt)
     error_m = std::min(error_m.value_or(*final_m), *final_m);
-  if (const auto text = truth_contradiction(truth, estimate, error_m))
+  const bool foreign = record.config.empty() || record.program.has_value();
+  if (const auto text = truth_contradiction(truth, estimate, error_m, foreign))
     record.recording.notes.push_back(std::string(kWarning) + *text);
 }
 

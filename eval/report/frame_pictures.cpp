@@ -23,7 +23,7 @@ constexpr std::size_t kMostWorst = 3;  // runs whose worst frame is shown
 
 /// A frame to show, with what it is.
 struct Choice {
-  std::size_t frame = 0;
+  std::size_t frame = 0;  ///< counted from the first of the run's window
   double time_s = 0;
   std::string caption;
 };
@@ -55,18 +55,24 @@ std::size_t frame_at(const run_charts::RunSeries& run, std::int64_t timestamp_ns
   return best;
 }
 
-Choice choice_of(const run_charts::RunSeries& run, std::size_t frame, std::string what) {
-  const double time_s = run.time_s(run.frames[frame].timestamp_ns);
-  return {frame, time_s, fmt::format("{}frame {}", what.empty() ? "" : what + ", ", frame)};
+/// The number of a frame of the run's window in its recording.
+std::size_t number_of(const run_charts::RunSeries& run, std::size_t frame) {
+  return run.run->record.recording.first_frame + frame;
 }
 
-std::optional<Choice> worst_of(const run_charts::RunSeries& run) {
+Choice choice_of(const run_charts::RunSeries& run, std::size_t frame, std::string what) {
+  const double time_s = run.time_s(run.frames[frame].timestamp_ns);
+  return {frame, time_s, fmt::format("{}frame {}", what.empty() ? "" : what + ", ", number_of(run, frame))};
+}
+
+/// framed: has the frames of the run's window, which an imported run has not.
+std::optional<Choice> worst_of(const run_charts::RunSeries& run, const run_charts::RunSeries& framed) {
   const run_charts::ComparedPose* worst = nullptr;
   for (const run_charts::ComparedPose& pose : run.poses) {
     if (pose.T_truth_truth && (worst == nullptr || pose.error_m > worst->error_m)) worst = &pose;
   }
-  if (worst == nullptr || run.frames.empty()) return std::nullopt;
-  return choice_of(run, frame_at(run, worst->timestamp_ns),
+  if (worst == nullptr) return std::nullopt;
+  return choice_of(framed, frame_at(framed, worst->timestamp_ns),
                    fmt::format("largest error of {}, {:.2f} cm", run.label, 100 * worst->error_m));
 }
 
@@ -76,7 +82,7 @@ std::vector<Choice> scene_choices(std::span<const run_charts::RunSeries> runs,
   std::vector<Choice> choices = {choice_of(framed, 0, "the scene as it is seen first")};
   for (const run_charts::RunSeries& run : runs) {
     if (choices.size() > kMostWorst) break;
-    if (auto worst = worst_of(run)) choices.push_back(std::move(*worst));
+    if (auto worst = worst_of(run, framed)) choices.push_back(std::move(*worst));
   }
   return choices;
 }
@@ -90,13 +96,13 @@ std::vector<page::PageImage> images_of(const std::vector<Choice>& choices,
 }
 
 /// Of the frames that runs kept with their patches, each once.
-std::vector<page::PageImage> kept_images(const run_charts::RunSeries* framed,
+std::vector<page::PageImage> kept_images(std::size_t first_frame, const run_charts::RunSeries* framed,
                                          std::span<const LabelledPatches> patches) {
   std::map<std::size_t, page::PageImage> images;
   for (const LabelledPatches& run : patches) {
     for (const run_files::PatchTableFrame& frame : run.frames) {
       if (images.contains(frame.frame)) continue;
-      images[frame.frame] = {fmt::format("frame {}", frame.frame),
+      images[frame.frame] = {fmt::format("frame {}", first_frame + frame.frame),
                              source_of(color_of(frame.grey), kPictureWidth_px), std::nullopt};
       if (framed != nullptr) images[frame.frame].time_s = framed->time_s(frame.timestamp_ns);
     }
@@ -162,7 +168,7 @@ std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& r
                                    remedy.empty() ? "" : ": ", remedy));
   }
   if (!remedy.empty()) remedy = fmt::format(" {}.", remedy);
-  std::vector<page::PageImage> kept = kept_images(framed, patches);
+  std::vector<page::PageImage> kept = kept_images(recording.first_frame, framed, patches);
   const std::string sentence = fmt::format("No images of the recording ({}).{}", why, remedy);
   if (kept.empty()) return {{kTitle, sentence, page::PageParagraphs{}, 3}};
   return {{kTitle, sentence + " These are the frames that runs kept with their patches.", std::move(kept), 3,

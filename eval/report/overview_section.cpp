@@ -174,8 +174,7 @@ page::PageSection overview_section(const findings::Ranking& ranking, const table
   const bool by_methods = ranking.configurations.size() > kMostColumns;
   std::string title = fmt::format("{} by {}", ranking.metric->heading,
                                   by_methods ? "method and recording" : "recording and method");
-  if (!only) title += fmt::format(": {} data", ranking.data_word());
-  if (!only && !ranking.frames.empty()) title += ", " + ranking.frames;
+  if (!only) title += fmt::format(": {} data{}", ranking.data_word(), ranking.restrictions());
   return {std::move(title), text_of(ranking, overview, pictures, by_methods),
           by_methods ? by_method(ranking, overview, pictures) : by_recording(ranking, overview, pictures)};
 }

@@ -42,8 +42,10 @@ page::PageDetails configuration_of(const run_files::FoundRun& run, const std::st
   }
   for (const record::RecordedOption& option : r.config)
     details.table.rows.push_back({{option.key, value_text(option.value), option.origin}, ""});
-  for (const std::string& note : r.recording.notes)
-    details.table.rows.push_back({{"note on the recording", note, "the reader"}, ""});
+  for (std::string note : r.recording.notes) {
+    std::erase(note, '`');  // of Markdown
+    details.table.rows.push_back({{"note on the recording", std::move(note), "the reader"}, ""});
+  }
   return details;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "eval/record/data_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 
 namespace fusebench::report {
 
@@ -39,23 +40,25 @@ std::size_t place_of(const run_files::FoundRun& run, RunsOfRecording group) {
 
 std::string title_of(const record::RecordedRecording& recording,
                      const std::vector<run_files::FoundRun>& runs) {
-  const bool other_window = std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
-    const record::RecordedRecording& other = run.record.recording;
-    return other.name == recording.name && other.frames > 0 &&
-           (other.first_frame != recording.first_frame || other.frames != recording.frames);
-  });
-  if (!other_window || recording.frames == 0) return recording.name;
-  return fmt::format("{}, frames {}:{}", recording.name, recording.first_frame,
-                     recording.first_frame + recording.frames);
+  const std::vector<std::string> windows = run_files::RunSet(runs).window_labels();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const record::RecordedRecording& other = runs[i].record.recording;
+    const bool same = other.name == recording.name && other.first_frame == recording.first_frame &&
+                      other.frames == recording.frames;
+    if (same && recording.frames > 0 && !windows[i].empty())
+      return fmt::format("{}, {}", recording.name, windows[i]);
+  }
+  return recording.name;
 }
 
 std::string facts_of(const record::RecordedRecording& recording) {
   const std::string data = record::data_cell(record::words_of(recording));
   constexpr std::string_view kRecorded = "recorded";
-  return fmt::format("{}, format {}, {} frames over {:.1f} s; ground truth: {}.",
+  return fmt::format("{}, format {}, {} frames{} over {:.1f} s; ground truth: {}.",
                      data.starts_with(kRecorded) ? "real" + data.substr(kRecorded.size()) : data,
-                     recording.format, recording.frames, recording.duration_s,
-                     recording.truth.empty() ? "unknown" : recording.truth);
+                     recording.format, recording.frames,
+                     recording.whole_frames > 0 ? fmt::format(" of {}", recording.whole_frames) : "",
+                     recording.duration_s, recording.truth.empty() ? "unknown" : recording.truth);
 }
 
 page::PageTable run_facts(RunsOfRecording group, const RunLabels& labels) {

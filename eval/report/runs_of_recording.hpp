@@ -20,7 +20,7 @@ using RunLabels = std::vector<std::string>;  ///< one a run of a recording
 /// Which of a recording's runs it is.
 [[nodiscard]] std::size_t place_of(const run_files::FoundRun& run, RunsOfRecording group);
 
-/// The recording's name, with the window where others of it have sections of their own.
+/// The recording's name, with the window of runs that processed a part of it (RunSet::window_labels()).
 [[nodiscard]] std::string title_of(const record::RecordedRecording& recording,
                                    const std::vector<run_files::FoundRun>& runs);
 [[nodiscard]] std::string facts_of(const record::RecordedRecording& recording);

@@ -38,7 +38,10 @@ page::PageTable page_table(const tables::ResultTable& table) {
 
 page::PageTable lines_table(const std::vector<std::string>& lines) {
   page::PageTable table;
-  for (const std::string& line : lines) table.rows.push_back({{line}, ""});
+  for (std::string line : lines) {
+    std::erase(line, '`');  // of Markdown
+    table.rows.push_back({{std::move(line)}, ""});
+  }
   return table;
 }
 
@@ -47,8 +50,7 @@ page::PageSection findings_section(const std::vector<run_files::FoundRun>& runs,
                                    const std::vector<findings::Ranking>& rankings) {
   page::PageParagraphs paragraphs;
   for (const findings::Ranking& ranking : rankings) {
-    for (std::string& sentence : findings::sentences_of(ranking))
-      paragraphs.lines.push_back(std::move(sentence));
+    if (auto sentence = findings::sentence_of(ranking)) paragraphs.lines.push_back(std::move(*sentence));
   }
   if (auto sentence = findings::final_poses_of(runs)) paragraphs.lines.push_back(std::move(*sentence));
   for (std::string& sentence : findings::failures_of(table)) paragraphs.lines.push_back(std::move(sentence));
@@ -89,10 +91,9 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
       ranking.recordings, ranking.data_word(), ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
-  const std::string frames = ranking.frames.empty() ? "" : ", " + ranking.frames;
-  return {
-      only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data_word(), frames),
-      std::move(text), std::move(table), 3, true};
+  return {only ? "What was compared"
+               : fmt::format("What was compared: {} data{}", ranking.data_word(), ranking.restrictions()),
+          std::move(text), std::move(table), 3, true};
 }
 
 /// The table of systems and how to read it, where it says more than the table of runs.

@@ -172,9 +172,9 @@ page::Chart pareto_chart(const aggregate::ParetoFront& front) {
   page::Chart chart;
   chart.title = fmt::format("{} against time", front.metric->key);
   chart.caption = fmt::format(
-      "Means over {} recordings. On the front no other configuration is both better and cheaper. {} "
-      "configurations that lost, failed or did not run some recordings are left out.",
-      front.recordings.size(), front.left_out);
+      "Means over {} recording{}. On the front no other configuration is both better and cheaper. Left out, "
+      "since they lost, failed or did not run some recordings: {}.",
+      front.recordings.size(), front.recordings.size() == 1 ? "" : "s", front.left_out);
   chart.x_label = "CPU [ms/frame]";
   chart.left_label = std::string(front.metric->heading);
   page::ChartSeries line{"Pareto front", {}};

@@ -71,7 +71,8 @@ page::PageSection best_section(const aggregate::BestTable& table) {
   }
   std::string text;
   for (const aggregate::BestGroup& group : table.groups) text += group.headline + " ";
-  return {"Best configurations", text + "`fusebench best` has more of them, and other metrics.",
+  std::erase(text, '`');  // of Markdown
+  return {"Best configurations", text + "fusebench best has more of them, and other metrics.",
           std::move(page), 3};
 }
 

@@ -5,11 +5,11 @@
 #include <system_error>
 #include <utility>
 
-#include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/page/series_colours.hpp"
 #include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::run_charts {
 
@@ -54,18 +54,20 @@ Trajectory on_clock_of(const record::RecordedMetrics& metrics, Trajectory truth)
   return reference_clock::on_estimate_clock(std::move(truth), clock->offset.offset_s);
 }
 
-/// ate: of this estimate; its alignment is that of the poses.
+/// ate: of this estimate; its alignment and its association are those of the poses.
 std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& all_truth,
                                    const record::Outcome<trajectory_error::AteResult>& ate) {
   const Trajectory truth = ate.value ? all_truth : Trajectory{};
   const SE3 T_truth_world = ate.value ? ate.value->alignment.T_reference_estimate : SE3{};
   std::vector<ComparedPose> poses;
-  for (const StampedPose& pose : estimate) {
-    ComparedPose both{pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0};
-    both.T_truth_truth = trajectory::interpolate_pose(truth, pose.timestamp_ns, trajectory::kMaxTruthGap_ns);
-    if (both.T_truth_truth)
-      both.error_m = (both.T_truth_camera.translation - both.T_truth_truth->translation).norm();
-    poses.push_back(both);
+  for (const StampedPose& pose : estimate)
+    poses.push_back({pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0});
+  const auto pairs = trajectory_error::associated_poses(truth, estimate, {});
+  if (!pairs) return poses;
+  for (const auto& [true_pose, estimated] : *pairs) {
+    ComparedPose& both = poses[estimated];
+    both.T_truth_truth = truth[true_pose].T_world_camera;
+    both.error_m = (both.T_truth_camera.translation - both.T_truth_truth->translation).norm();
   }
   return poses;
 }

@@ -27,6 +27,7 @@ RunIdentity identity_of(const FoundRun& run) {
   identity.truth = record.recording.truth;
   identity.first_frame = record.recording.first_frame;
   identity.frames = record.recording.frames;
+  identity.whole_frames = record.recording.whole_frames;
   identity.variant = record.variant;
   for (const record::RecordedOption& option : record.config) {
     if (is_edit(option.origin)) identity.options.emplace_back(option.key, value_text(option.value));

@@ -20,6 +20,7 @@ struct RunIdentity {
   std::string truth;              ///< "none", "given", kPseudoTruthWord
   std::size_t first_frame = 0;    ///< of its window of the recording
   std::size_t frames = 0;         ///< of its window; 0: unknown
+  std::size_t whole_frames = 0;   ///< of the whole recording where the window is a part of it; 0: unknown
   std::string variant;
   RunOptions options;          ///< edited options: those whose origin is_edit()
   bool wrote_options = false;  ///< the record has all options of this program

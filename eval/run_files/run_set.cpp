@@ -43,6 +43,14 @@ std::string imu_words(const std::string& imu) {
   return imu == "recorded" ? "recorded IMU" : imu;
 }
 
+using Window = std::pair<std::size_t, std::size_t>;  // first frame, frames
+
+/// The windows that runs of a recording processed.
+struct Windows {
+  std::set<Window> windows;
+  std::size_t whole_frames = 0;  ///< of the recording; without records of it the end of the last window
+};
+
 /// The different values among runs of one variant over one recording.
 struct Differences {
   std::set<std::size_t> repetitions;
@@ -75,20 +83,27 @@ std::string RunSet::shared_options() const {
 }
 
 std::vector<std::string> RunSet::window_labels() const {
-  std::map<std::string, std::set<std::pair<std::size_t, std::size_t>>> windows;
+  std::map<std::string, Windows> windows;
   for (const RunIdentity& run : runs_) {
-    if (run.frames > 0) windows[run.recording].emplace(run.first_frame, run.frames);
+    if (run.frames == 0) continue;
+    Windows& of_recording = windows[run.recording];
+    of_recording.whole_frames =
+        std::max({of_recording.whole_frames, run.whole_frames, run.first_frame + run.frames});
+    of_recording.windows.emplace(run.first_frame, run.frames);
   }
   std::vector<std::string> texts(runs_.size());
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    const auto of_recording = windows.find(runs_[i].recording);
-    if (of_recording == windows.end() || of_recording->second.size() < 2) continue;
-    std::pair window(runs_[i].first_frame, runs_[i].frames);
+    const auto found = windows.find(runs_[i].recording);
+    if (found == windows.end()) continue;
+    const auto& [of_recording, whole_frames] = found->second;
+    const Window whole(0, whole_frames);
+    Window window(runs_[i].first_frame, runs_[i].frames);
+    if (window == Window(0, 0) && of_recording.contains(whole)) window = whole;
     if (window.second == 0) {
-      const auto next = of_recording->second.lower_bound(window);
-      window = next == of_recording->second.end() ? *of_recording->second.begin() : *next;
+      const auto next = of_recording.lower_bound(window);
+      window = next == of_recording.end() ? *of_recording.begin() : *next;
     }
-    texts[i] = fmt::format("frames {}:{}", window.first, window.first + window.second);
+    if (window != whole) texts[i] = fmt::format("frames {}:{}", window.first, window.first + window.second);
   }
   return texts;
 }
@@ -142,12 +157,14 @@ std::vector<std::string> RunSet::distinctions() const {
     if (run.opened_recording()) differences.imus.insert(run.imu);
   }
   const std::vector<std::string> windows = window_labels();
+  std::map<std::string, std::set<std::string>> of_recording;
+  for (std::size_t i = 0; i < runs_.size(); ++i) of_recording[runs_[i].recording].insert(windows[i]);
   std::vector<std::string> texts = differing_options();
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> uses;
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const RunIdentity& run = runs_[i];
     const Differences& differences = of_variant.at({run.recording, run.variant});
-    if (run.frames > 0) append(texts[i], windows[i]);
+    if (run.frames > 0 && of_recording.at(run.recording).size() > 1) append(texts[i], windows[i]);
     if (differences.repetitions.size() > 1) append(texts[i], fmt::format("repetition {}", run.repetition));
     if (differences.replicates.size() > 1) append(texts[i], fmt::format("replicate {}", run.replicate));
     if (run.opened_recording() && differences.imus.size() > 1) append(texts[i], imu_words(run.imu));

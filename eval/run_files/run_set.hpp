@@ -27,8 +27,11 @@ class RunSet {
   /// The edited options that all runs share, in the same form.
   [[nodiscard]] std::string shared_options() const;
 
-  /// "frames 0:100" where other frames of the same recording were run as well; else empty. A run whose frames
-  /// are unknown belongs to the first window that begins at its first frame or later.
+  /// "frames 0:100" of a run that processed a part of its recording, empty of a run of the whole recording.
+  /// Where records do not contain the frames of the whole recording, windows that begin at frame 0 and end
+  /// last are the whole recording. A run whose frames are unknown belongs to the whole recording if it begins
+  /// at frame 0 and another run is of the whole recording, else to the first window that begins at its first
+  /// frame or later.
   [[nodiscard]] std::vector<std::string> window_labels() const;
 
   /// The IMU of each run. For a run that did not open its recording, that of the runs of its variant over the

@@ -82,7 +82,10 @@ std::string tabular(const LatexTable& table, std::span<const LatexTable::Line> l
 std::string footnotes_of(const LatexTable& table) {
   if (table.footnotes.empty()) return "";
   std::string text = "\\par\\smallskip\n\\begin{minipage}{\\linewidth}\\raggedright\n";
-  for (const std::string& footnote : table.footnotes) text += text::latex_escaped(footnote) + "\\par\n";
+  for (std::string footnote : table.footnotes) {
+    std::erase(footnote, '`');  // of Markdown; LaTeX sets it as a quotation mark
+    text += text::latex_escaped(footnote) + "\\par\n";
+  }
   return text + "\\end{minipage}\n";
 }
 

@@ -18,6 +18,13 @@ struct Pivot {
   struct Line {
     std::string recording;
     std::vector<const TableRow*> cells;  ///< one a method; null where it was not run
+
+    /// Whether it tracked so few frames that its errors do not compare with those of the best-covered run.
+    [[nodiscard]] bool is_sparse(const TableRow& row) const {
+      return std::ranges::any_of(cells, [&](const TableRow* other) {
+        return other != nullptr && row.tracked_share() < kLeastCoverage * other->tracked_share();
+      });
+    }
   };
   std::vector<std::string> methods;
   std::vector<Line> lines;
@@ -33,12 +40,11 @@ std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
 Pivot pivot_of(const ResultTable& table) {
   const run_files::RunSet rows(std::vector<run_files::RunIdentity>(table.rows.begin(), table.rows.end()));
   const std::vector<std::string> labels = rows.configuration_labels();
-  const std::vector<std::string> windows = rows.window_labels();
   Pivot pivot;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const TableRow& row = table.rows[i];
-    const std::string name = windows[i].empty() ? row.recording : row.recording + " " + windows[i];
+    const std::string name = row.recorded_part();
     const std::size_t line = place_in(names, name);
     const std::size_t method = place_in(pivot.methods, labels[i]);
     if (line == pivot.lines.size()) pivot.lines.push_back({name, {}});
@@ -50,10 +56,15 @@ Pivot pivot_of(const ResultTable& table) {
   return pivot;
 }
 
-std::string shown_cell(const TableRow* row, const registry::RunMetric& metric) {
+/// "1.68", "1.68 (20 %)" of a run that tracked few frames, "1.68 *" of one that contradicts the ground truth.
+std::string shown_cell(const Pivot::Line& line, const TableRow* row, const registry::RunMetric& metric) {
   if (row == nullptr) return "";
-  return row->status == record::RunStatus::ok ? shown_value(metric, *row)
-                                              : std::string(record::to_string(row->status));
+  if (row->status != record::RunStatus::ok) return std::string(record::to_string(row->status));
+  std::string text = shown_value(metric, *row);
+  if (metric.better != registry::Better::smaller || !row->numbers[metric]) return text;
+  if (line.is_sparse(*row)) text += fmt::format(" ({:.0f} %)", 100 * row->tracked_share());
+  if (row->contradicts_truth) text += " *";
+  return text;
 }
 
 std::optional<double> number_of(const TableRow* row, const registry::RunMetric& metric) {
@@ -61,23 +72,49 @@ std::optional<double> number_of(const TableRow* row, const registry::RunMetric& 
   return row->numbers[metric];
 }
 
-/// Columns of the cells that are shown as the best of a line.
+/// Columns of the cells that are shown as the best of a line, of which sparse ones are none.
 std::vector<std::size_t> best_of(const Pivot::Line& line, const registry::RunMetric& metric) {
+  const bool smaller = metric.better == registry::Better::smaller;
   if (metric.better == registry::Better::neither) return {};
-  std::vector<double> numbers;
+  std::optional<double> best;
+  std::size_t numbers = 0;
+  const auto compared = [&](const TableRow* row) {
+    const auto number = number_of(row, metric);
+    return number && !(smaller && line.is_sparse(*row)) ? number : std::nullopt;
+  };
   for (const TableRow* row : line.cells) {
-    if (const auto number = number_of(row, metric)) numbers.push_back(*number);
+    numbers += number_of(row, metric) ? 1U : 0U;
+    if (const auto number = compared(row))
+      best = smaller ? std::min(*number, best.value_or(*number)) : std::max(*number, best.value_or(*number));
   }
-  if (numbers.size() < 2) return {};
-  const double best = metric.better == registry::Better::smaller ? *std::ranges::min_element(numbers)
-                                                                 : *std::ranges::max_element(numbers);
+  if (numbers < 2 || !best) return {};
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < line.cells.size(); ++c) {
-    const auto number = number_of(line.cells[c], metric);
-    if (number && shown_value(metric, number) == shown_value(metric, std::optional(best)))
-      columns.push_back(c + 1);
+    const auto number = compared(line.cells[c]);
+    if (number && shown_value(metric, number) == shown_value(metric, best)) columns.push_back(c + 1);
   }
   return columns;
+}
+
+/// What the marks of shown_cell() mean.
+std::vector<std::string> footnotes_of(const Pivot& pivot, const registry::RunMetric& metric) {
+  std::vector<std::string> notes = {fmt::format("{}: {}.", metric.heading, metric.definition)};
+  const auto any = [&](const auto& is_marked) {
+    return metric.better == registry::Better::smaller &&
+           std::ranges::any_of(pivot.lines, [&](const Pivot::Line& line) {
+             return std::ranges::any_of(line.cells, [&](const TableRow* row) {
+               return number_of(row, metric) && is_marked(line, *row);
+             });
+           });
+  };
+  if (any([](const Pivot::Line& line, const TableRow& row) { return line.is_sparse(row); }))
+    notes.push_back(
+        fmt::format("(%): share of frames tracked, where it is below {:.0f} % of that of another "
+                    "run of the recording; never the best.",
+                    100 * kLeastCoverage));
+  if (any([](const Pivot::Line&, const TableRow& row) { return row.contradicts_truth; }))
+    notes.emplace_back("*: the poses contradict the ground truth; the table of runs has the numbers.");
+  return notes;
 }
 
 LatexTable latex_of(const Pivot& pivot, const registry::RunMetric& metric) {
@@ -90,10 +127,10 @@ LatexTable latex_of(const Pivot& pivot, const registry::RunMetric& metric) {
   for (const Pivot::Line& line : pivot.lines) {
     LatexTable::Line& cells = latex.lines.emplace_back();
     cells.cells = {line.recording};
-    for (const TableRow* row : line.cells) cells.cells.push_back(shown_cell(row, metric));
+    for (const TableRow* row : line.cells) cells.cells.push_back(shown_cell(line, row, metric));
     cells.bold = best_of(line, metric);
   }
-  latex.footnotes = {fmt::format("{}: {}.", metric.heading, metric.definition)};
+  latex.footnotes = footnotes_of(pivot, metric);
   return latex;
 }
 
@@ -124,7 +161,9 @@ Result<std::string> render_pivot(const ResultTable& table, const registry::RunMe
     return fail(ErrorCode::usage, "--pivot has no such format (allowed: markdown | csv | latex)");
   std::vector<text::TableCells> lines = {latex.heading};
   for (const LatexTable::Line& line : latex.lines) lines.push_back(line.cells);
-  return text::markdown_table(lines, 1, width) + fmt::format("\n{}\n", latex.footnotes.front());
+  std::string text = text::markdown_table(lines, 1, width) + "\n";
+  for (const std::string& note : latex.footnotes) text += note + "\n";
+  return text;
 }
 
 }  // namespace fusebench::tables

@@ -77,7 +77,7 @@ run_files::RunSet rows_of(const run_files::RunSet& set, const std::vector<std::v
 bool is_damaged(const run_files::FoundRun& run, ResultTable& table) {
   constexpr const char* kFile = "intensity.bin";
   std::error_code ignored;
-  if (!fs::exists(run.folder / kFile, ignored)) return false;  // that is said where it is opened
+  if (!fs::exists(run.folder / kFile, ignored)) return false;  // add_common_pixels() checks it
   const auto checked = run_files::check_file(run.folder, run.record, kFile);
   if (checked) return false;
   table.notes.push_back(fmt::format("{}, {}: left out of AIE common: {}", run.record.recording.name,
@@ -103,6 +103,12 @@ void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable
     if (members.size() < 2) continue;
     std::vector<fs::path> files;
     for (const std::size_t member : members) files.push_back(run_of(member).folder / "intensity.bin");
+    std::error_code ignored;
+    if (!std::ranges::all_of(files, [&](const fs::path& file) { return fs::exists(file, ignored); })) {
+      table.notes.push_back(
+          fmt::format("{}: no AIE on common pixels, which needs runs made with --keep all", recording.first));
+      continue;
+    }
     const auto common = common_pixel_error(files);
     if (!common) {
       table.notes.push_back(
@@ -184,7 +190,8 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "ATE fitted: the same after the offset between the camera and the motion-capture body was fitted as "
       "well; "
       "- where the motion does not make it observable.",
-      "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
+      "RPE: rmse over 1 s (TUM, fixed delta), no alignment.",
+      "fps: whole run, reading included."};
   if (std::ranges::any_of(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; })) {
     footer.push_back(
         "undetected: undetected failures, frames with a pose whose motion over the second before is off by "
@@ -224,15 +231,19 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   const run_files::RunSet rows = rows_of(set, groups);
   const std::vector<std::string> labels = rows.labels();
   const std::vector<std::string> methods = rows.methods();
+  const std::vector<std::string> windows = rows.window_labels();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const run_files::FoundRun& first = runs[groups[i].front()];
     TableRow row = row_of(first, labels[i]);
     row.members = groups[i];
+    row.window = windows[i];
     if (row.members.size() > 1) add_replicates(runs, row);
     if (const auto note = record::clock_note(first.record))
       table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
-    if (const auto note = record::noted_contradiction(first.record))
-      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
+    const auto contradiction = record::noted_contradiction(first.record);
+    row.contradicts_truth = contradiction.has_value();
+    if (contradiction)
+      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *contradiction));
     if (row.status != record::RunStatus::ok)
       table.notes.push_back(
           fmt::format("{}, {}: {}: {}", row.recording, row.label, record::to_string(row.status), row.reason));

@@ -19,19 +19,33 @@
 
 namespace fusebench::tables {
 
+/// Errors of a run that tracked less than this share of the frames of another run are of an easier part of
+/// the recording.
+inline constexpr double kLeastCoverage = 0.9;
+
 /// One run, or the replicates of one, with the identity of the first.
 struct TableRow : run_files::RunIdentity {
   std::vector<std::size_t> members = {};              ///< indices of its runs
   registry::RunNumbers numbers;                       ///< of replicates: medians over those that are ok
   std::vector<registry::RunNumbers> replicates = {};  ///< of each that is ok, where there are several
   std::size_t ok_members = 0;                         ///< of `members`
-  std::string label;  ///< the variant, with what distinguishes the run from others (RunSet::labels())
+  std::string label;        ///< the variant, with what distinguishes the run from others (RunSet::labels())
+  std::string window = {};  ///< "frames 0:100" of a run over a part of the recording
   record::RunStatus status =
       record::RunStatus::failed;  ///< of the first replicate that is not ok, if there is one
   std::string reason;
   std::optional<std::size_t> silent;  ///< undetected failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
+  bool contradicts_truth = false;  ///< record::noted_contradiction()
+
+  [[nodiscard]] double tracked_share() const {
+    return total == 0 ? 0.0 : static_cast<double>(tracked) / static_cast<double>(total);
+  }
+  /// "desk" or "desk frames 0:100".
+  [[nodiscard]] std::string recorded_part() const {
+    return window.empty() ? recording : recording + " " + window;
+  }
 };
 
 /// Of the runs of a variant with the same options on data of one kind.

@@ -58,7 +58,7 @@ std::string status_cell(const TableRow& row) {
 }
 
 Cells shown_cells(const TableRow& row, bool with_replicates) {
-  Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
+  Cells cells = {row.recorded_part(), record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
                  status_cell(row)};
   for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, row));
   cells.push_back(fmt::format("{}/{}", row.tracked, row.total));
@@ -124,6 +124,16 @@ void keep_columns(const std::vector<std::string>& metrics, LatexTable& table) {
   for (LatexTable::Line& line : table.lines) line = chosen(line, kept);
 }
 
+/// Whether a line of the footer, "ATE: rmse ...", is of a column that the heading does not have.
+bool explains_other_column(const std::string& line, const Cells& heading, bool with_replicates) {
+  const std::string name = line.substr(0, line.find(':'));
+  const auto has_name = [&](const std::string& cell) {
+    return cell == name || cell.starts_with(name + " [");
+  };
+  return std::ranges::any_of(header_cells(with_replicates), has_name) &&
+         std::ranges::none_of(heading, has_name);
+}
+
 std::string latex(const ResultTable& table, const LatexLayout& layout) {
   LatexTable latex;
   latex.caption =
@@ -142,7 +152,9 @@ std::string latex(const ResultTable& table, const LatexLayout& layout) {
   if (!layout.metrics.empty()) keep_columns(layout.metrics, latex);
   latex.footnotes = {count_line(table)};
   latex.footnotes.insert(latex.footnotes.end(), table.notes.begin(), table.notes.end());
-  latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
+  for (const std::string& line : table.footer) {
+    if (!explains_other_column(line, latex.heading, replicates)) latex.footnotes.push_back(line);
+  }
   return latex_table(latex, layout);
 }
 

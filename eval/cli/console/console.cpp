@@ -81,7 +81,7 @@ std::string summary_line(const record::RunRecord& record) {
   // Imported runs have no times.
   if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
-    line += fmt::format(", {} undetected failures", silent);
+    line += fmt::format(", {} undetected failure{}", silent, silent == 1 ? "" : "s");
   return line;
 }
 

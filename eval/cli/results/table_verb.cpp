@@ -34,7 +34,9 @@ struct TableOptions {
 
 Result<int> pivot(const std::vector<run_files::FoundRun>& runs, const TableOptions& options,
                   tables::TableFormat format, std::size_t width) {
-  const auto metric = registry::find_ranking_metric(options.pivot);
+  const auto metric = options.pivot == "tracked"
+                          ? Result<const registry::RunMetric*>(&registry::run_metric("coverage"))
+                          : registry::find_ranking_metric(options.pivot);
   if (!metric) return tl::unexpected(metric.error());
   const auto text = tables::render_pivot(tables::table_of(runs), **metric, format, options.layout, width);
   if (!text) return tl::unexpected(text.error());
@@ -94,8 +96,8 @@ console::Verb add_table_verb(CLI::App& app) {
       ->excludes("--paper");
   verb->add_option(
           "--pivot", options->pivot,
-          "One number, a line a recording and a column a method: ate, rpe, aie, mesh, cpu, ..., or the "
-          "name of a metric that ranks")
+          "One number, a line a recording and a column a method: ate, rpe, aie, mesh, cpu, tracked, ..., or "
+          "the name of a metric that ranks")
       ->type_name("METRIC")
       ->excludes("--paper")
       ->excludes("--systems");

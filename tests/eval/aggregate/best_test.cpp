@@ -147,6 +147,17 @@ TEST(Best, DataOfDifferentKindsAreNotInOneMean) {
   EXPECT_NE(render_best(table, BestFormat::markdown).find("simulated: images"), std::string::npos);
 }
 
+TEST(Best, AnOrderByIntensityErrorsSaysThatPixelsDiffer) {
+  std::vector<RunRow> rows = {sample_row("desk", {{"patches.size_px", "4"}}, 0.01),
+                              sample_row("desk", {{"patches.size_px", "8"}}, 0.01)};
+  const registry::RunMetric& aie = registry::run_metric("aie_grey");
+  rows[0].numbers.set(aie, 5);
+  rows[1].numbers.set(aie, 6);
+  const auto table = best_configurations(rows, {&aie});
+  ASSERT_TRUE(table.has_value());
+  EXPECT_NE(table->groups.at(0).headline.find("AIE on common pixels"), std::string::npos);
+}
+
 TEST(Best, WindowsAndImusAreNotAveragedButRepetitionsAre) {
   const auto run = [](std::size_t frames, std::size_t repetition, const char* imu, double ate_m) {
     RunRow row = sample_row("desk", {}, ate_m);
@@ -160,13 +171,15 @@ TEST(Best, WindowsAndImusAreNotAveragedButRepetitionsAre) {
   rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
   rows.back().fingerprint.clear();  // it did not open the recording
   set_labels(rows);
-  EXPECT_EQ(rows[1].label, "full frames 0:5 repetition 2 no IMU");
+  EXPECT_EQ(rows[1].label, "full repetition 2 no IMU");
   const BestTable table = best(rows, "recording");
   ASSERT_EQ(table.groups.size(), 2U);
-  EXPECT_EQ(table.groups[0].label, "desk frames 0:4");
+  EXPECT_EQ(table.groups[0].label, "desk");
   EXPECT_EQ(table.groups[0].kind, "recorded");
-  const auto& five = table.groups[1].rows;
-  ASSERT_EQ(five.size(), 2U);
+  EXPECT_EQ(table.groups[1].label, "desk frames 0:4");
+  EXPECT_EQ(table.groups[1].kind, "recorded, parts of recordings");
+  const auto& five = table.groups[0].rows;
+  ASSERT_EQ(five.size(), 3U);  // one of the run whose IMU is unknown
   EXPECT_EQ(five[0].configuration.imu, "synthetic IMU");
   EXPECT_EQ(five[1].configuration.imu, "none");
   EXPECT_NEAR(*five[1].configuration.mean, 0.03, 1e-15);

@@ -38,6 +38,7 @@ TEST(Record, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->recording.notes, sample_record().recording.notes);
   EXPECT_EQ(back->recording.truth, kPseudoTruthWord);
   EXPECT_EQ(back->recording.start_ns, sample_record().recording.start_ns);
+  EXPECT_EQ(back->recording.whole_frames, 700U);
   EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
 }
 

@@ -30,6 +30,7 @@ inline record::RunRecord sample_record() {
                       "seed 1",
                       "pseudo ground truth",
                       {"stamps made \"regular\"", "warning: a gap"}};
+  record.recording.whole_frames = 700;
   record.recording.start_ns = 1'305'031'229'528'748'000;
   record.variant = "full";
   record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},

@@ -69,6 +69,18 @@ TEST(TruthContradiction, IsKeptInTheNotesOfARunThatIsOk) {
   EXPECT_TRUE(lost.recording.notes.empty());
 }
 
+TEST(TruthContradiction, OfPosesOfAnotherProgramPointsToTheirConventions) {
+  RunRecord imported = record_with_ate(0.85);
+  note_contradiction(imported, circle(1.2), circle(1.2));
+  EXPECT_NE(noted_contradiction(imported)->find("--align sim3"), std::string::npos);
+  EXPECT_NE(noted_contradiction(imported)->find("--pose world_to_camera"), std::string::npos);
+  EXPECT_EQ(noted_contradiction(imported)->find("inspect"), std::string::npos);
+  RunRecord own = record_with_ate(0.85);
+  own.config = {{"terms.prior", std::string("imu"), "default"}};
+  note_contradiction(own, circle(1.2), circle(1.2));
+  EXPECT_NE(noted_contradiction(own)->find("fusebench inspect"), std::string::npos);
+}
+
 TEST(TruthContradiction, TheBetterOfOnlineAndFinalPosesCounts) {
   RunRecord record = record_with_ate(0.85);
   record.final_metrics = record_with_ate(0.1).metrics;

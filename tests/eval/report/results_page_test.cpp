@@ -203,6 +203,29 @@ TEST_F(ResultsPageTest, PicturesShowTheFirstFrameAndTheWorst) {
   EXPECT_NE(warnings[0].find("--data FOLDER"), std::string::npos) << warnings[0];
 }
 
+TEST_F(ResultsPageTest, PicturesHaveTheFramesNumbersOfTheRecordingAlsoOfImportedRuns) {
+  FoundRun full = add_run("full", kFrames, SE3{});
+  FoundRun imported = add_run("other", kFrames, SE3{});
+  full.record.recording.first_frame = imported.record.recording.first_frame = 300;
+  full.record.recording.whole_frames = 700;
+  std::vector<RunSeries> series = {series_of(full, "full"), series_of(imported, "other")};
+  series[1].frames.clear();
+  series[1].poses[40].error_m = 0.07;
+  std::vector<std::size_t> asked;
+  const FrameReader reader = [&](const RecordedRecording&, std::span<const std::size_t> frames) {
+    asked.assign(frames.begin(), frames.end());
+    return Result<std::vector<ColorImage>>(
+        std::vector<ColorImage>(frames.size(), ColorImage(64, 48, Rgb{9, 9, 9})));
+  };
+  std::vector<std::string> warnings;
+  const auto sections = frame_pictures(full.record.recording, series, {}, 0, reader, warnings);
+  EXPECT_TRUE(std::ranges::count(asked, 40U)) << "counted from the first frame of the window";
+  const auto& scene = std::get<std::vector<PageImage>>(sections.at(0).content);
+  ASSERT_EQ(scene.size(), 3U);
+  EXPECT_EQ(scene[2].caption, "largest error of other, 7.00 cm, frame 340");
+  testing::expect_contains(to_html(results_page({full}, "t").page), "circle, frames 300:360");
+}
+
 TEST_F(ResultsPageTest, AModelHasTheWayOfItsCameraAndItsBoxAndTheSameColourAsItsCurves) {
   add_run("full", kFrames, SE3{so3_exp({0.3, -0.2, 0.5}), {4, 5, 6}});
   add_run("no-imu", kFrames, SE3{});

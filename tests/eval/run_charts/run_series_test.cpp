@@ -8,6 +8,7 @@
 
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -56,6 +57,25 @@ TEST_F(RunSeriesOfFolder, TimeCountsFromTheFirstImageThoughTheTruthBeginsEarlier
   EXPECT_TRUE(series.warnings.empty()) << series.warnings.front();
   ASSERT_EQ(series.poses.size(), 20U);
   EXPECT_NEAR(series.time_s(series.poses.front().timestamp_ns), 0.2, 1e-9);
+}
+
+TEST_F(RunSeriesOfFolder, ErrorsAreThoseOfTheAte) {
+  const Trajectory truth = line(5'000'000'000, 40);
+  Trajectory estimate = line(5'008'000'000, 20);  // between two true poses
+  estimate[7].T_world_camera.translation.y() = 0.03;
+  write("truth.tum", trajectory::tum_text(truth));
+  write("trajectory.tum", trajectory::tum_text(estimate));
+  run_files::FoundRun run;
+  run.folder = folder_;
+  run.record.recording.truth = "given";
+  run.record.frames = {20, 20, 0};
+  const auto ate = trajectory_error::absolute_trajectory_error(truth, estimate);
+  ASSERT_TRUE(ate.has_value()) << ate.error().message;
+  run.record.metrics.ate = {*ate, {}};
+  const RunSeries series = series_of(run, "full");
+  ASSERT_EQ(series.poses.size(), ate->errors_m.size());
+  for (std::size_t i = 0; i < series.poses.size(); ++i)
+    EXPECT_NEAR(series.poses[i].error_m, ate->errors_m[i], 1e-6);
 }
 
 TEST(RunSeriesColours, DifferBetweenVariants) {

@@ -59,9 +59,27 @@ TEST(RunSetTest, WindowsRepetitionsAndImusAreToldWhereTheyDiffer) {
   runs[2].first_frame = 100;
   runs[2].frames = 50;
   runs[2].imu = "synthetic IMU";
-  EXPECT_EQ(run_labels(runs), (Texts{"full frames 0:240 repetition 1 recorded IMU",
-                                     "full frames 0:240 repetition 2 recorded IMU",
-                                     "full frames 100:150 repetition 1 synthetic IMU", "dm frames 0:240"}));
+  EXPECT_EQ(run_labels(runs), (Texts{"full repetition 1 recorded IMU", "full repetition 2 recorded IMU",
+                                     "full frames 100:150 repetition 1 synthetic IMU", "dm"}));
+}
+
+TEST(RunSetTest, APartOfARecordingIsNamedWithoutOtherWindows) {
+  std::vector runs = {run_of("full")};
+  runs[0].whole_frames = 300;
+  EXPECT_EQ(RunSet(runs).window_labels(), (Texts{"frames 0:240"}));
+  EXPECT_EQ(run_labels(runs), (Texts{"full"}));  // it distinguishes nothing
+  runs[0].whole_frames = 0;                      // unknown
+  EXPECT_EQ(RunSet(runs).window_labels(), (Texts{""}));
+  runs[0].first_frame = 100;
+  EXPECT_EQ(RunSet(runs).window_labels(), (Texts{"frames 100:340"}));
+}
+
+TEST(RunSetTest, AWholeRecordingHasNoWindowNextToPartsOfIt) {
+  std::vector runs = {run_of("full"), run_of("full"), run_of("full")};
+  runs[1].frames = 60;
+  runs[1].whole_frames = 240;
+  runs[2].frames = 0;  // it failed before it opened the recording
+  EXPECT_EQ(RunSet(runs).window_labels(), (Texts{"", "frames 0:60", ""}));
 }
 
 TEST(RunSetTest, ConfigurationsAreApartByImuAndNotByRepetition) {

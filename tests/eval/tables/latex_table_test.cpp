@@ -36,6 +36,15 @@ TEST_F(LatexTableTest, RunsThatAreShownAlikeAreAllTheBest) {
   EXPECT_EQ(bold, 2U) << text;
 }
 
+TEST_F(LatexTableTest, FootnotesHaveNoMarkdown) {
+  LatexTable table;
+  table.heading = {"recording", "ATE [cm]"};
+  table.lines = {{{"desk", "1.23"}}};
+  table.footnotes = {"`fusebench inspect` looks for the reason"};
+  const std::string text = latex_table(table, {});
+  EXPECT_NE(text.find("\nfusebench inspect looks"), std::string::npos) << text;
+}
+
 TEST_F(LatexTableTest, LatexHasTheBestOfEachRecordingInBold) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);

@@ -278,6 +278,16 @@ TEST_F(TableTest, DamagedDifferencesCostOnlyTheCommonColumn) {
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("intensity.bin"), std::string::npos);
 }
 
+TEST_F(TableTest, RunsThatKeptNoDifferencesHaveNoCommonPixels) {
+  add_three_runs();
+  std::filesystem::remove(folder_ / "runs/fr1_rpy/dm/01234567/intensity.bin");
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  EXPECT_NE(std::ranges::find(table->notes,
+                              "fr1_rpy: no AIE on common pixels, which needs runs made with --keep all"),
+            table->notes.end());
+}
+
 TEST_F(TableTest, AnImportedRunLeavesTheCommonPixelsOfOursAlone) {
   add_three_runs();
   RunRecord imported = *read_record(folder_ / "runs/fr1_rpy/full/01234567/record.json");

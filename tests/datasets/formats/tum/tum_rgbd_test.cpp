@@ -469,7 +469,9 @@ TEST(SelectFrames, RenumbersAndChangesTheFingerprint) {
   const std::string whole = recording->fingerprint;
   ASSERT_TRUE(select_frames(*recording, 0, 3));
   EXPECT_EQ(recording->fingerprint, whole);
+  EXPECT_EQ(recording->whole_frames, 0U);
   ASSERT_TRUE(select_frames(*recording, 1, 3));
+  EXPECT_EQ(recording->whole_frames, 3U);
   EXPECT_NE(recording->fingerprint, whole);
   ASSERT_EQ(recording->frames.size(), 2U);
   EXPECT_EQ(recording->load_frame(0)->timestamp_ns, recording->frames[0].timestamp_ns);
