@@ -119,7 +119,7 @@ Error unrecognised(const std::filesystem::path& place) {
           "docs/own-camera.md recordings of your own camera"};
 }
 
-/// Files that may lie beside a recording are in its folder.
+/// Optional files of a recording are in its folder.
 std::filesystem::path folder_of(const std::filesystem::path& place) {
   std::error_code ignored;
   return std::filesystem::is_directory(place, ignored) ? place : place.parent_path();

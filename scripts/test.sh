@@ -130,7 +130,7 @@ step includes ./scripts/check_includes.py
 step references ./scripts/check_references.sh
 step links ./scripts/check_links.py
 step type-names ./scripts/check_type_names.sh
-step words ./scripts/check_words.py --check core datasets/images datasets/simulator datasets/synthetic_imu
+step words ./scripts/check_words.py --check core datasets eval
 step planted-faults ./scripts/plant_faults.py --check
 step build ./scripts/build.sh ci
 step test-packages packages_for_tests

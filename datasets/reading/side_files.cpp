@@ -52,7 +52,7 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
                             source.string(), trajectory::stamp_text(truth.front().timestamp_ns),
                             trajectory::stamp_text(truth.back().timestamp_ns),
                             trajectory::stamp_text(first_ns), trajectory::stamp_text(last_ns)),
-                "the truth must be of the same recording and clock, in seconds");
+                "the ground truth must be of the same recording and clock, in seconds");
   }
   const auto is_uncovered = [&](const recording::FrameEntry& frame) {
     return !trajectory::interpolate_pose(truth, frame.timestamp_ns, trajectory::kMaxTruthGap_ns);

@@ -65,7 +65,7 @@ Result<MeshComparison> MeshComparison::create(const PreciseMesh& reconstruction,
   if (auto usable = check_mesh(reconstruction, "the reconstruction"); !usable) {
     return tl::unexpected(usable.error());
   }
-  if (auto usable = check_mesh(truth, "the truth"); !usable) return tl::unexpected(usable.error());
+  if (auto usable = check_mesh(truth, "the ground truth"); !usable) return tl::unexpected(usable.error());
   auto reconstruction_points = sample_mesh(reconstruction, options.reconstruction);
   if (!reconstruction_points) return tl::unexpected(reconstruction_points.error());
   auto truth_points = sample_mesh(truth, options.truth);

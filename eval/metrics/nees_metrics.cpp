@@ -127,9 +127,10 @@ Result<ConsistencyResult> consistency(std::span<const filter::StampedState> trut
   if (estimates.empty()) return fail(ErrorCode::data_corrupt, "there are no estimates");
   const auto first = interpolate_state(truth, estimates.front().timestamp_ns);
   if (!first) {
-    return fail(ErrorCode::data_corrupt,
-                "no true states lie around the first frame within 0.1 s, so the truth cannot be moved into "
-                "the world of the estimate");
+    return fail(
+        ErrorCode::data_corrupt,
+        "no true states lie around the first frame within 0.1 s, so the ground truth cannot be moved into "
+        "the world of the estimate");
   }
   const SE3 T_world_truth = (first->T_world_imu * T_imu_camera).inverse();
   ConsistencyResult result;

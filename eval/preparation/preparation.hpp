@@ -38,7 +38,7 @@ struct PreparedConstant {
 };
 
 struct Preparation {
-  std::size_t frames = 0;   ///< that were looked at
+  std::size_t frames = 0;   ///< that were checked
   std::size_t tracked = 0;  ///< of these, with a velocity
   std::size_t pairs = 0;    ///< of frames that the timing was measured by
   std::array<PreparedConstant, 3> constants;

@@ -47,7 +47,7 @@ struct MeasuredTiming {
 
 /// A value whose prior has no standard deviation is held. Standard deviations are from the scatter of the
 /// pairs (sandwich estimator), and of what that does not show: 5 ms, and the time in which the image moves by
-/// the 0.15 px that depth may lie beside colour (focal_length_px: of the recording's images).
+/// the 0.15 px that depth may be off colour (focal_length_px: of the recording's images).
 [[nodiscard]] MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const SensorTiming& prior,
                                             double focal_length_px, const Workers& workers);
 

@@ -103,7 +103,8 @@ struct RecordedRecording {
   std::optional<RecordedCamera> camera = {};  ///< none in a record that is older
   bool prepared = false;  ///< constants of its sensors were measured first: camera and notes say which
   std::optional<std::int64_t> start_ns = {};  ///< stamp of the first of these frames; none in an older record
-  /// Of the whole recording where the run was asked for a part of it; 0: it was not, or an older record.
+  /// Frames of the whole recording if the run processed a part of it; 0 if it processed all, or of an older
+  /// record.
   std::size_t whole_frames = 0;
 };
 

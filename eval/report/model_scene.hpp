@@ -1,4 +1,4 @@
-// The models of a recording's runs and the paths of their cameras, to be looked at from all sides.
+// The models of a recording's runs and the paths of their cameras, which can be turned.
 #pragma once
 
 #include <cstddef>

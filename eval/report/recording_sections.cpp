@@ -25,7 +25,7 @@ namespace fusebench::report {
 
 namespace {
 
-constexpr std::size_t kMostPictured = 2;  // variants whose patches stand beside each other
+constexpr std::size_t kMostPictured = 2;  // variants whose patches are next to each other
 
 using Sections = std::vector<page::PageSection>;
 

@@ -21,7 +21,7 @@ namespace fusebench::report {
 
 namespace {
 
-/// What a sweep is looked at by: the first two that the runs have.
+/// The numbers that a sweep is ranked by: the first two that the runs have.
 constexpr std::array<std::string_view, 4> kMetrics = {"ate", "aie", "mesh", "rpe"};
 constexpr std::size_t kMostMetrics = 2;
 

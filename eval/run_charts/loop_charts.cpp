@@ -115,7 +115,7 @@ page::Chart loop_view_chart(const RunSeries& run, int across, int along, std::si
 
 page::Chart candidate_chart(const RunSeries& run, std::size_t buckets) {
   page::Chart chart = chart_of(fmt::format("Candidates for loops: {}", run.label),
-                               "time at which a place is looked at [s]", "time of the older place [s]",
+                               "time of the new place [s]", "time of the older place [s]",
                                "A dot a pair of places that look alike, or see the same by the poses so far. "
                                "Dots along a diagonal: the camera follows its earlier path.");
   for (const FateSeries& fate : kFates) {

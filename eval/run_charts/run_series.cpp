@@ -47,7 +47,7 @@ std::vector<Row> rows_of(const run_files::FoundRun& run, const char* name,
   return {};
 }
 
-/// The truth by the clock that the metrics are of.
+/// The ground truth by the clock that the metrics are of.
 Trajectory on_clock_of(const record::RecordedMetrics& metrics, Trajectory truth) {
   const auto& clock = metrics.reference_clock.value;
   if (!clock || !clock->applied) return truth;

@@ -20,7 +20,7 @@ namespace fusebench::run_charts {
 struct ComparedPose {
   std::int64_t timestamp_ns = 0;
   SE3 T_truth_camera;                ///< of the estimate, aligned as for the ATE
-  std::optional<SE3> T_truth_truth;  ///< of the truth, associated as for the ATE; none without a pair
+  std::optional<SE3> T_truth_truth;  ///< of the ground truth, associated as for the ATE; none without a pair
   double error_m = 0;                ///< distance of both, if it is
 };
 

@@ -52,7 +52,7 @@ page::Chart view_chart(std::span<const RunSeries> runs, int across, int along, s
   return chart;
 }
 
-/// Times of the recording: the truth often begins earlier and ends later.
+/// Times of the recording: the ground truth often begins earlier and ends later.
 Vector2d shown_times_s(std::span<const RunSeries> runs) {
   Vector2d range(0, 0);
   for (const RunSeries& run : runs) {

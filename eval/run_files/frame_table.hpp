@@ -4,7 +4,7 @@
 // extended), pixels (photometric, geometric), aie_grey and aie_pixels of the frame, iterations, converged,
 // chi2 (photometric, geometric), speed_mps, angular_speed_radps, blur_px (predicted), patch_motion_px (median
 // since the last frame), position_sigma_m and rotation_sigma_rad (the filter's, longest axis; with model_ in
-// front: against the model, by which a pose is believed or not),
+// front: against the model, which decides whether a pose is accepted),
 // imu_time_offset_s, model_blocks; then milliseconds per stage. All but the milliseconds are the same when
 // the run is repeated.
 #pragma once

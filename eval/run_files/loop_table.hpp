@@ -9,7 +9,7 @@
 
 namespace fusebench::run_files {
 
-/// What became of a pair of places that was looked at.
+/// What became of a pair of places that was checked.
 enum class CandidateFate {
   accepted_by_features,
   accepted_by_depth,    ///< by depth alone

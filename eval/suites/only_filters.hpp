@@ -1,4 +1,4 @@
-// What --only says: which runs of a suite are asked for.
+// What --only says: which runs of a suite are requested.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
   // In a scene of the user's own, the poses say where the camera is; in the furnished room they cannot.
   options->file_motion.in_place = !request.scene.empty();
   if (request.realistic || realistic_motion) simulator::make_realistic(*options);
-  // What is asked for goes before what is realistic.
+  // Given values replace those of --realistic.
   if (request.exposure_s) {
     options->auto_exposure.on = false;
     options->exposure_s = *request.exposure_s;

@@ -91,7 +91,8 @@ std::optional<double> ratio_of(std::span<const std::optional<double>> values) {
   return *values.front() / *values.back();
 }
 
-/// What was run here of recordings of these names, with an IMU that was made from the truth or without one.
+/// What was run here of recordings of these names, with an IMU that was made from the ground truth or without
+/// one.
 void add_here(PaperTable& paper, const RunsHere& here, const std::set<std::string>& names, bool synthetic_imu,
               PaperRow& row) {
   const PublishedTable& published = paper.of;
@@ -246,7 +247,7 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
     if (!row.data.empty()) table.rows.push_back(std::move(row));
   };
   for (const std::string& name : left) add_alone("not published", name, false);
-  for (const std::string& name : synthetic) add_alone("IMU made from the truth", name, true);
+  for (const std::string& name : synthetic) add_alone("IMU made from the ground truth", name, true);
   if (!synthetic.empty()) {
     table.notes.emplace_back(
         "IMU made from the ground truth: these runs use information of the reference, so they compare "

@@ -27,7 +27,7 @@ struct PaperTable {
   /// The variants that the table asks for, then whatever else was run or imported and has the value.
   std::vector<std::string> systems_here;
   /// The published ones, then recordings that were run here and are not published, then what ran here with an
-  /// IMU that was made from the ground truth: that stands beside no published number.
+  /// IMU that was made from the ground truth: such a run is next to no published number.
   std::vector<PaperRow> rows;
   std::vector<std::string> notes;
 };

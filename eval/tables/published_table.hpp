@@ -1,4 +1,4 @@
-// Numbers that others have published (configs/paper/), to stand beside those that were run here.
+// Published numbers of others (configs/paper/), shown next to those of runs here.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct PublishedTable {
   std::string source;
   bool verified = false;  ///< read again in the source itself
   std::string note;
-  const registry::RunMetric* value = nullptr;  ///< what of a run here stands beside it
+  const registry::RunMetric* value = nullptr;  ///< the number of a run here that is shown next to it
   std::vector<std::string> systems;
   std::vector<std::string> variants = {"full"};  ///< run here; with `ratio` in the order of the systems
   bool ratio = false;                            ///< the first system or variant over the last

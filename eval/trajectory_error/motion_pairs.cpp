@@ -158,8 +158,8 @@ Result<DeltaUnit> parse_delta_unit(std::string_view text) {
 Result<void> check_compared(const MotionListing& listing, std::size_t compared) {
   if (compared <= listing.most_compared) return {};
   return fail(ErrorCode::usage,
-              fmt::format("at least {} pairs of poses would have to be looked at (allowed: up to {})",
-                          compared, listing.most_compared),
+              fmt::format("at least {} pairs of poses would have to be checked (allowed: up to {})", compared,
+                          listing.most_compared),
               "take fewer poses (--downsample N or --motion_filter D A), or leave out --all_pairs");
 }
 
