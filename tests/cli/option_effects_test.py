@@ -62,7 +62,9 @@ OUTPUTS = {"--help", "--protocol", "-p", "--plot", "--save_plot", "--save_result
 # What repeats the request in a document, or differs without an effect on numbers.
 REQUEST = {"association", "plane", "motions", "mode", "protocol", "first", "requested"}
 # Pairs of a verb or protocol and an option that may change nothing: what is given is what is recognised or the default.
-SAME = {("*", "--format"), ("rpe evo ", "--all_pairs"), ("rpe evo -s", "--all_pairs"),
+SAME = {("*", "--format"), ("*", "--plot_full_ref"), ("*", "--full_check"), ("rpe kitti", "--duplicates"), ("nees", "--align"),
+        ("ate evo without stamps", "--plot_x_dimension"), ("rpe evo without stamps", "--plot_x_dimension"),
+        ("traj ", "--stamp_unit"), ("traj --ref gt.txt", "--sync"), ("traj --ref gt.txt -a", "--sync"), ("rpe evo ", "--all_pairs"), ("rpe evo -s", "--all_pairs"),
         ("rpe evo without stamps ", "--all_pairs"), ("rpe evo without stamps -s", "--all_pairs"), ("ate tum", "--align"), ("ate tum", "-a"), ("ate eth3d", "--align"), ("ate eth3d", "-a"),
         ("rpe eth3d", "--align"), ("rpe eth3d", "-a")}
 # Further contexts in which options are given: arguments that all runs of the context have.

@@ -35,6 +35,12 @@ return drawn.filter((made, i) => {
 """
 
 
+def alike(on_paper, on_screen):
+    """True if the ends differ by less than a fifth of the range: axes of another width end at other round numbers."""
+    tolerance = 0.2 * (on_screen[1] - on_screen[0])
+    return all(abs(a - b) < tolerance for a, b in zip(on_paper, on_screen, strict=True))
+
+
 def time_ranges(reader, part, expected, what):
     """Whether all charts over time of a part show the same range; None: any."""
     driver = reader.driver
@@ -83,8 +89,9 @@ def zoom_charts(reader):
             reader.complain("a click in a zoomed chart does not choose its time")
         time_ranges(reader, part, expected, "a click")
         driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
-        if driver.execute_script(TIME_RANGES, part) != whole:
-            reader.complain("paper does not show the whole of a zoomed chart")
+        on_paper = driver.execute_script(TIME_RANGES, part)
+        if not all(alike(*ranges) for ranges in zip(on_paper, whole, strict=True)):
+            reader.complain(f"paper does not show the whole of a zoomed chart: {on_paper} in place of {whole}")
         driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
         time_ranges(reader, part, expected, "after a print")
         canvas.send_keys("+")
