@@ -146,11 +146,17 @@ filter::GaussianState Pipeline::dead_reckoned(const filter::GaussianState& predi
       .state;
 }
 
+bool Pipeline::measures_depth() const {
+  return novelty_.depth &&
+         health::depth_share(preparation_.frame().depth_m) >= config_.health.min_depth_share;
+}
+
 health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted, health::FrameReport& report) {
   if (!tracking_->estimate) return health::FrameStatus::initialised;
   if (track(predicted, false, report)) return health::FrameStatus::tracked;
-  const bool has_intensities = novelty_.color && report.health != health::FrameHealth::dark;
-  if (has_intensities && track_again(predicted, true, report)) return health::FrameStatus::tracked;
+  const bool is_covered = report.health == health::FrameHealth::dark && !measures_depth();
+  if (novelty_.color && !is_covered && track_again(predicted, true, report))
+    return health::FrameStatus::tracked;
   const filter::GaussianState reckoned = dead_reckoned(predicted, preparation_.frame().capture_ns());
   if (!relocalise(reckoned, report)) return health::FrameStatus::lost;
   tracking_->loops.add_relocalisation(reckoned, *tracking_->estimate, tracking_->reference.timestamp_ns);
@@ -240,12 +246,10 @@ bool Pipeline::relocalise(const filter::GaussianState& prediction, health::Frame
   if (!config_.terms.relocalisation || !novelty_.color) return false;
   Tracking& now = *tracking_;
   const bool dark = report.health == health::FrameHealth::dark;
-  const bool measures_depth =
-      novelty_.depth && health::depth_share(preparation_.frame().depth_m) >= config_.health.min_depth_share;
   std::optional<relocalisation::RelocalisedReference> found;
   {
     const health::StageClock clock(report.stages, health::Stage::update);
-    found = now.relocalisation.find(preparation_.frame(), {!dark, measures_depth}, prediction, now.model,
+    found = now.relocalisation.find(preparation_.frame(), {!dark, measures_depth()}, prediction, now.model,
                                     workers_);
   }
   if (!found) return false;

@@ -58,6 +58,8 @@ class Pipeline {
   [[nodiscard]] Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
   [[nodiscard]] filter::GaussianState dead_reckoned(const filter::GaussianState& predicted,
                                                     std::int64_t now_ns) const;
+  /// True if the depth of the frame is new and covers at least health.min_depth_share of the image.
+  [[nodiscard]] bool measures_depth() const;
   [[nodiscard]] health::FrameStatus locate(const filter::GaussianState& predicted,
                                            health::FrameReport& report);
   [[nodiscard]] bool track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);

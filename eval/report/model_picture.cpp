@@ -67,7 +67,7 @@ SE3 T_mesh_view(const Eigen::AlignedBox3d& box, std::span<const SE3> poses) {
 
 /// A path that is far from the model belongs to a camera that was lost, and would make the model small.
 std::vector<Vector3d> near_places(std::span<const SE3> poses, const Eigen::AlignedBox3d& box) {
-  const Vector3d margin = Vector3d::Constant(0.5 * box.diagonal().norm());
+  const Vector3d margin = Vector3d::Constant(box.diagonal().norm());
   const Eigen::AlignedBox3d around(Vector3d(box.min() - margin), Vector3d(box.max() + margin));
   std::vector<Vector3d> places;
   for (const SE3& pose : poses) {

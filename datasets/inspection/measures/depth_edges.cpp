@@ -11,7 +11,7 @@ namespace fusebench::inspection::measures {
 
 namespace {
 
-constexpr std::size_t kMaxEdges = 750;  // of one frame
+constexpr std::size_t kMaxEdges = 500;  // of one frame
 constexpr int kMaxHole_px = 8;
 constexpr float kJump = 0.1F;  // of the nearer depth
 constexpr int kSurroundings_px = 16;

@@ -13,7 +13,7 @@ namespace fusebench::inspection::measures {
 
 namespace {
 
-constexpr std::size_t kFrames = 60;
+constexpr std::size_t kFrames = 48;
 constexpr std::size_t kMinEdges = 1500;  // of all
 constexpr std::size_t kBlocks = 16;      // of frames whose errors may be common
 constexpr double kMinInside = 0.6;       // share of edges that a model must leave in the image
@@ -70,21 +70,22 @@ class EdgeScore {
     return sum / static_cast<double>(inside);
   }
 
-  /// Derivatives of the sum of strengths at the finest level across the edges, by blocks of frames.
+  /// Derivatives of the sum of strengths at the finest level across the edges, by blocks: of frames, or of
+  /// stretches of the edges of one frame where there are fewer frames than blocks.
   [[nodiscard]] std::vector<Numbers> gradients(const Numbers& p, const Workers& workers) const {
+    const std::size_t parts = (kBlocks + frames_.size() - 1) / frames_.size();  // of a frame
     const std::size_t length = std::max<std::size_t>(1, frames_.size() / kBlocks);
-    return workers.map_chunks<Numbers>(frames_.size(), length, [&](std::size_t begin, std::size_t end) {
-      Numbers sum = Numbers::Zero();
-      for (std::size_t k = begin; k < end; ++k) {
-        for (const DepthEdge& edge : frames_[k]->edges) {
-          const auto sample = sample_of(*frames_[k], edge, p, 0);
-          if (!sample) continue;
-          const int axis = edge.upright ? 0 : 1;
-          sum += sample->by_pixel[axis] * by_numbers(*frames_[k], edge, axis);
-        }
-      }
-      return sum;
-    });
+    return workers.map_chunks<Numbers>(
+        parts * frames_.size(), length, [&](std::size_t begin, std::size_t end) {
+          Numbers sum = Numbers::Zero();
+          for (std::size_t k = begin; k < end; ++k) {
+            const FrameEdges& frame = *frames_[k / parts];
+            const std::size_t count = frame.edges.size(), part = k % parts;
+            for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
+              sum += gradient_of(frame, frame.edges[i], p);
+          }
+          return sum;
+        });
   }
 
   /// A step of about two pixels of each number, for numeric derivatives.
@@ -136,6 +137,13 @@ class EdgeScore {
     by[5] = frame.motion_px[axis];
     by[6 + axis] = !across ? 0 : edge.ends_nearer ? 1 : -1;
     return by;
+  }
+
+  [[nodiscard]] Numbers gradient_of(const FrameEdges& frame, const DepthEdge& edge, const Numbers& p) const {
+    const auto sample = sample_of(frame, edge, p, 0);
+    if (!sample) return Numbers::Zero();
+    const int axis = edge.upright ? 0 : 1;
+    return sample->by_pixel[axis] * by_numbers(frame, edge, axis);
   }
 
   [[nodiscard]] std::optional<StrengthSample> sample_of(const FrameEdges& frame, const DepthEdge& edge,
@@ -260,9 +268,9 @@ struct Estimate {
 };
 
 Estimate refine(const EdgeScore& score, Numbers p, const Workers& workers) {
-  constexpr int kMostSteps = 40;
+  constexpr int kMostSteps = 15;
   constexpr double kLongest_px = 2;
-  constexpr double kConverged_px = 0.05;
+  constexpr double kConverged_px = 0.1;
   const Numbers prior_information = score.prior_sigma().cwiseAbs2().cwiseInverse();
   const Square prior = prior_information.asDiagonal();
   for (int i = 0;; ++i) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -30,6 +31,10 @@ struct BestOptions {
   int threads = 1;
 };
 
+bool has_ranked_row(const aggregate::BestGroup& group) {
+  return std::ranges::any_of(group.rows, [](const aggregate::BestRow& row) { return row.rank.has_value(); });
+}
+
 Result<int> best(const BestOptions& options) {
   const auto format = aggregate::parse_best_format(options.json ? "json" : options.format);
   if (!format) return tl::unexpected(format.error());
@@ -41,7 +46,7 @@ Result<int> best(const BestOptions& options) {
   if (!rows) return tl::unexpected(rows.error());
   const auto table = aggregate::best_configurations(*rows, request);
   if (!table) return tl::unexpected(table.error());
-  if (table->groups.empty())
+  if (std::ranges::none_of(table->groups, has_ranked_row))
     return fail(ErrorCode::data_missing, fmt::format("no run has {}", request.metric->key),
                 "rank by another number, e.g. --by aie or --by cpu");
   const std::size_t width = console::table_width(options.width, options.named_format->count() > 0);

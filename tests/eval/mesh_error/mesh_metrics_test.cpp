@@ -142,19 +142,19 @@ TEST(MeshMetrics, UselessMeshesAreRefused) {
   EXPECT_EQ(message({}, good), "the reconstruction has no triangles (0 vertices)");
   PreciseMesh points = good;
   points.triangles.clear();
-  EXPECT_TRUE(message(good, points).starts_with("the truth has no triangles"));
+  EXPECT_TRUE(message(good, points).starts_with("the ground truth has no triangles"));
   PreciseMesh not_finite = good;
   not_finite.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(message(not_finite, good).starts_with("the reconstruction: vertex 5 is at "));
   EXPECT_NE(message(not_finite, good).find(" nan "), std::string::npos);
   PreciseMesh far = good;
   far.vertices[5].y() = 1e200;  // its square is infinite
-  EXPECT_TRUE(message(good, far).starts_with("the truth: vertex 5 is at "));
+  EXPECT_TRUE(message(good, far).starts_with("the ground truth: vertex 5 is at "));
   EXPECT_TRUE(message(good, far).ends_with("(allowed: coordinates up to 1e+12)"));
   PreciseMesh torn = good;
   torn.triangles[2][1] = 100'000;
   EXPECT_NE(message(good, torn).find("names vertex 100000"), std::string::npos);
-  EXPECT_NE(message(good, good, MeshViews{{10, 10, 10, 10, 4.5, 4.5}, 0, 1, {}}).find("is seen"),
+  EXPECT_NE(message(good, good, MeshViews{{10, 10, 10, 10, 4.5, 4.5}, 0, 1, {}}).find("is visible"),
             std::string::npos);
 }
 

@@ -99,7 +99,7 @@ TEST(PoseIntensity, TrueDepthNeedsATrueSurface) {
   const auto result =
       pose_intensity::pose_intensity(recording, std::vector<NamedTrajectory>{{"true", path(3, 0)}}, options);
   ASSERT_FALSE(result.has_value());
-  testing::expect_contains(result.error().message, "true mesh");
+  testing::expect_contains(result.error().message, "ground-truth mesh");
 }
 
 TEST(PoseIntensity, TrueDepthIsThatOfThePlaneAlongTheAxis) {

@@ -75,7 +75,7 @@ TEST(PaperTable, AnImuMadeFromTheTruthIsBesideNoPublishedNumber) {
   EXPECT_FALSE(table.rows[0].here[0] || table.rows[0].here[1]);
   EXPECT_EQ(table.rows[0].here[2], 9);
   const PaperRow& synthetic = table.rows[5];
-  EXPECT_EQ(synthetic.group, "IMU made from the truth");
+  EXPECT_EQ(synthetic.group, "IMU made from the ground truth");
   EXPECT_EQ(synthetic.label, "rgbd_dataset_freiburg1_desk");
   EXPECT_FALSE(synthetic.published[0] || synthetic.published[1]);
   EXPECT_EQ(synthetic.here[0], 12);
