@@ -13,8 +13,9 @@ namespace {
 
 std::vector<double> sorted_stamps_ns(const Trajectory& trajectory) {
   std::vector<double> stamps_ns;
+  stamps_ns.reserve(trajectory.size());
   for (const StampedPose& pose : trajectory) stamps_ns.push_back(static_cast<double>(pose.timestamp_ns));
-  std::ranges::sort(stamps_ns);
+  if (!std::ranges::is_sorted(stamps_ns)) std::ranges::sort(stamps_ns);
   return stamps_ns;
 }
 
@@ -42,6 +43,7 @@ double covered_share_of_time(const Trajectory& whole, const Trajectory& part) {
   if (whole_ns.empty() || whole_ns.front() == whole_ns.back()) return 1;
   if (part_ns.size() < 2) return 0;
   std::vector<double> steps_ns;
+  steps_ns.reserve(part_ns.size());
   for (std::size_t i = 1; i < part_ns.size(); ++i) steps_ns.push_back(part_ns[i] - part_ns[i - 1]);
   const double longest_ns = kLongestStep * upper_median(steps_ns);
   double covered_ns = 0;

@@ -252,11 +252,16 @@ std::optional<double> time_coverage(const Trajectory& reference, const Trajector
   using trajectory_files::AssociationRule;
   if (association.rule == AssociationRule::index || association.rule == AssociationRule::number)
     return std::nullopt;
-  Trajectory whole;
-  std::ranges::copy_if(reference, std::back_inserter(whole), [&](const StampedPose& pose) {
-    const double time_s = trajectory_files::stamp_seconds(pose.timestamp_ns);
-    return time_s >= association.start_s && time_s <= association.end_s;
-  });
+  const bool is_cut = !std::isinf(association.start_s) || !std::isinf(association.end_s);
+  Trajectory cut;
+  if (is_cut) {
+    std::ranges::copy_if(reference, std::back_inserter(cut), [&](const StampedPose& pose) {
+      const double time_s = trajectory_files::stamp_seconds(pose.timestamp_ns);
+      return time_s >= association.start_s && time_s <= association.end_s;
+    });
+  }
+  const Trajectory& whole = is_cut ? cut : reference;
+  if (association.offset_s == 0) return trajectory::covered_share_of_time(whole, estimate);
   return trajectory::covered_share_of_time(
       whole, trajectory::with_clock_offset(estimate, trajectory_files::nanoseconds(association.offset_s)));
 }
