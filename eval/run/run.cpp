@@ -124,7 +124,9 @@ Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   const bool is_measured = preparation::is_long_enough(run.recording);
   const bool has_own_imu = run.recording.imu_source == recording::ImuSource::recorded;
   if (!run.spec.prepare || (!is_measured && !has_own_imu)) return {};
-  const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
+  const preparation::SensorCheck checked =
+      is_measured ? preparation::check_sensors(run.recording, run.spec.out, workers)
+                  : preparation::inspected_sensors(run.recording, workers);
   if (auto refused = preparation::refusal(checked, run.recording.name)) {
     refused->hint += refused->hint.empty() ? "" : "; ";
     refused->hint += "--prepare off runs all the same";
