@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "core/trajectory/trajectory.hpp"
@@ -13,6 +12,7 @@
 #include "eval/trajectory_error/ate_rpe.hpp"
 #include "eval/trajectory_error/segment_errors.hpp"
 #include "eval/trajectory_files/stamps.hpp"
+#include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -252,15 +252,8 @@ std::optional<double> time_coverage(const Trajectory& reference, const Trajector
   using trajectory_files::AssociationRule;
   if (association.rule == AssociationRule::index || association.rule == AssociationRule::number)
     return std::nullopt;
-  const bool is_cut = !std::isinf(association.start_s) || !std::isinf(association.end_s);
-  Trajectory cut;
-  if (is_cut) {
-    std::ranges::copy_if(reference, std::back_inserter(cut), [&](const StampedPose& pose) {
-      const double time_s = trajectory_files::stamp_seconds(pose.timestamp_ns);
-      return time_s >= association.start_s && time_s <= association.end_s;
-    });
-  }
-  const Trajectory& whole = is_cut ? cut : reference;
+  const std::optional<Trajectory> cut = trajectory_files::in_range(reference, association);
+  const Trajectory& whole = cut ? *cut : reference;
   if (association.offset_s == 0) return trajectory::covered_share_of_time(whole, estimate);
   return trajectory::covered_share_of_time(
       whole, trajectory::with_clock_offset(estimate, trajectory_files::nanoseconds(association.offset_s)));

@@ -14,15 +14,6 @@ namespace fusebench::trajectory_files {
 
 namespace {
 
-Trajectory within(const Trajectory& trajectory, double start_s, double end_s) {
-  Trajectory kept;
-  for (const StampedPose& pose : trajectory) {
-    const double time_s = stamp_seconds(pose.timestamp_ns);
-    if (time_s >= start_s && time_s <= end_s) kept.push_back(pose);
-  }
-  return kept;
-}
-
 void take(const Trajectory& reference, const Trajectory& estimate,
           std::span<const trajectory::AssociatedPair> pairs, TrajectoryPair& result) {
   result.reference.reserve(pairs.size());
@@ -96,11 +87,20 @@ std::string_view to_string(AssociationRule rule) {
   return "";
 }
 
+std::optional<Trajectory> in_range(const Trajectory& reference, const AssociationOptions& options) {
+  if (std::isinf(options.start_s) && std::isinf(options.end_s)) return std::nullopt;
+  Trajectory kept;
+  for (const StampedPose& pose : reference) {
+    const double time_s = stamp_seconds(pose.timestamp_ns);
+    if (time_s >= options.start_s && time_s <= options.end_s) kept.push_back(pose);
+  }
+  return kept;
+}
+
 Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajectory& estimate,
                                const AssociationOptions& options) {
-  const bool whole = std::isinf(options.start_s) && std::isinf(options.end_s);
-  const Trajectory cut = whole ? Trajectory{} : within(reference_whole, options.start_s, options.end_s);
-  const Trajectory& reference = whole ? reference_whole : cut;
+  const std::optional<Trajectory> cut = in_range(reference_whole, options);
+  const Trajectory& reference = cut ? *cut : reference_whole;
   if (reference.empty() || estimate.empty()) {
     return fail(
         ErrorCode::data_corrupt,

@@ -48,6 +48,10 @@ struct TrajectoryPair {
   }
 };
 
+/// The poses of the reference from options.start_s to options.end_s; nullopt if neither limits it.
+[[nodiscard]] std::optional<Trajectory> in_range(const Trajectory& reference,
+                                                 const AssociationOptions& options);
+
 /// Stamps must increase on either side (nearest: any order). Errors data_corrupt: nothing matches, a range
 /// that leaves nothing, or (index) trajectories of different length.
 [[nodiscard]] Result<TrajectoryPair> pair_up(const Trajectory& reference, const Trajectory& estimate,

@@ -108,10 +108,10 @@ FrameEdges frame_edges(const RgbdFrame& frame) {
 /// A quarter of the size, of floats.
 cv::Mat small_image(const GreyImage& grey) {
   constexpr double kShrink = 0.25;
-  cv::Mat image(grey.height, grey.width, CV_32F);
-  for (int y = 0; y < grey.height; ++y) {
-    for (int x = 0; x < grey.width; ++x) image.at<float>(y, x) = static_cast<float>(grey(x, y));
-  }
+  // OpenCV has no read-only view; nothing writes through this one.
+  const cv::Mat view(grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data()));
+  cv::Mat image;
+  view.convertTo(image, CV_32F);
   cv::resize(image, image, {}, kShrink, kShrink, cv::INTER_AREA);
   return image;
 }
