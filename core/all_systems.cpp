@@ -4,18 +4,18 @@
 #include <array>
 #include <utility>
 
+#include "core/baselines/bundlefusion/bundlefusion_system.hpp"
+#include "core/baselines/elasticfusion/elasticfusion_system.hpp"
+#include "core/baselines/infinitam/infinitam_system.hpp"
+#include "core/baselines/opencv_odometry/opencv_odometry_system.hpp"
 #include "core/config/config.hpp"
 #include "core/paper_system.hpp"
-#include "core/systems/bundlefusion/bundlefusion_system.hpp"
-#include "core/systems/elasticfusion/elasticfusion_system.hpp"
-#include "core/systems/infinitam/infinitam_system.hpp"
-#include "core/systems/opencv_odometry/opencv_odometry_system.hpp"
 
 namespace fusebench::core {
 
 namespace {
 
-using MadeSystem = std::unique_ptr<systems::System>;
+using MadeSystem = std::unique_ptr<system::System>;
 
 MadeSystem make_filter(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
                        const Workers& workers, Replay replay) {
@@ -24,26 +24,26 @@ MadeSystem make_filter(const config::Config& config, const SensorRig& rig, std::
 
 MadeSystem make_infinitam(const config::Config& config, const SensorRig& rig,
                           std::span<const ImuSample> /*imu*/, const Workers& workers, Replay /*replay*/) {
-  return std::make_unique<systems::infinitam::InfinitamSystem>(config.infinitam, config.depth, config.tsdf,
-                                                               rig, workers);
+  return std::make_unique<baselines::infinitam::InfinitamSystem>(config.infinitam, config.depth, config.tsdf,
+                                                                 rig, workers);
 }
 
 MadeSystem make_opencv_odometry(const config::Config& config, const SensorRig& rig,
                                 std::span<const ImuSample> /*imu*/, const Workers& workers,
                                 Replay /*replay*/) {
-  return std::make_unique<systems::opencv_odometry::OpencvOdometrySystem>(
+  return std::make_unique<baselines::opencv_odometry::OpencvOdometrySystem>(
       config.opencv_odometry.method, config.depth, config.tsdf, rig, workers);
 }
 
 MadeSystem make_bundlefusion(const config::Config& config, const SensorRig& rig,
                              std::span<const ImuSample> /*imu*/, const Workers& workers, Replay replay) {
-  return std::make_unique<systems::bundlefusion::BundlefusionSystem>(
+  return std::make_unique<baselines::bundlefusion::BundlefusionSystem>(
       config.bundlefusion, config.depth, config.tsdf, rig, workers, std::move(replay));
 }
 
 MadeSystem make_elasticfusion(const config::Config& config, const SensorRig& rig,
                               std::span<const ImuSample> imu, const Workers& workers, Replay /*replay*/) {
-  return std::make_unique<systems::elasticfusion::ElasticfusionSystem>(config, rig, imu, workers);
+  return std::make_unique<baselines::elasticfusion::ElasticfusionSystem>(config, rig, imu, workers);
 }
 
 constexpr std::string_view kAnyThreads = "any number, with the same results";

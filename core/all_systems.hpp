@@ -8,7 +8,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/replay.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/systems/system.hpp"
+#include "core/system/system.hpp"
 
 namespace fusebench::core {
 
@@ -19,9 +19,9 @@ struct SystemRow {
   std::string_view options;   ///< groups of options that the system reads, separated by blanks
   std::string_view threads;   ///< number of threads, and whether it affects the results
   /// imu: empty for systems without an IMU. The referenced arguments must outlive the system.
-  std::unique_ptr<systems::System> (*make)(const config::Config& config, const SensorRig& rig,
-                                           std::span<const ImuSample> imu, const Workers& workers,
-                                           Replay replay);
+  std::unique_ptr<system::System> (*make)(const config::Config& config, const SensorRig& rig,
+                                          std::span<const ImuSample> imu, const Workers& workers,
+                                          Replay replay);
 };
 
 /// All systems in listing order.
@@ -29,8 +29,8 @@ struct SystemRow {
 
 /// Creates the system of a configuration. replay: as in RecordingEstimator; bundlefusion builds its model
 /// with it.
-[[nodiscard]] std::unique_ptr<systems::System> make_system(const config::Config& config, const SensorRig& rig,
-                                                           std::span<const ImuSample> imu,
-                                                           const Workers& workers, Replay replay = {});
+[[nodiscard]] std::unique_ptr<system::System> make_system(const config::Config& config, const SensorRig& rig,
+                                                          std::span<const ImuSample> imu,
+                                                          const Workers& workers, Replay replay = {});
 
 }  // namespace fusebench::core

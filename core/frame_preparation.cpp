@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/alignment/reference_points.hpp"
 #include "core/config/groups/patches_config.hpp"
 #include "core/config/groups/terms_config.hpp"
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/estimator/alignment/reference_points.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
 
 namespace fusebench::core {
 

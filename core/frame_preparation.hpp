@@ -7,10 +7,10 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/filter/pose_clones.hpp"
-#include "core/health/stage_times.hpp"
-#include "core/measurement/patch_measurement.hpp"
-#include "core/preprocessing/camera_motion.hpp"
+#include "core/estimator/filter/pose_clones.hpp"
+#include "core/estimator/health/stage_times.hpp"
+#include "core/estimator/measurement/patch_measurement.hpp"
+#include "core/estimator/preprocessing/camera_motion.hpp"
 #include "core/repeated_images.hpp"
 
 namespace fusebench::core {

@@ -2,12 +2,12 @@
 // filter::iekf_update() (Eqs. 15-23).
 #pragma once
 
-#include "core/alignment/start_search.hpp"
 #include "core/base/parallel.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/filter/iekf.hpp"
+#include "core/estimator/alignment/start_search.hpp"
+#include "core/estimator/filter/iekf.hpp"
+#include "core/estimator/measurement/patch_measurement.hpp"
 #include "core/frame_preparation.hpp"
-#include "core/measurement/patch_measurement.hpp"
 #include "core/repeated_images.hpp"
 #include "core/tracking_state.hpp"
 

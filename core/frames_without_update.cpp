@@ -7,7 +7,7 @@
 #include "core/config/groups/health_config.hpp"
 #include "core/config/groups/prediction_config.hpp"
 #include "core/config/groups/terms_config.hpp"
-#include "core/prediction/motion_prior.hpp"
+#include "core/estimator/prediction/motion_prior.hpp"
 
 namespace fusebench::core {
 

@@ -6,7 +6,7 @@
 
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/health/frame_report.hpp"
+#include "core/estimator/health/frame_report.hpp"
 #include "core/tracking_state.hpp"
 
 namespace fusebench::core {

@@ -5,8 +5,8 @@
 
 #include "core/base/error.hpp"
 #include "core/base/geometry.hpp"
-#include "core/filter/moved_state.hpp"
-#include "core/filter/pose_clones.hpp"
+#include "core/estimator/filter/moved_state.hpp"
+#include "core/estimator/filter/pose_clones.hpp"
 
 namespace fusebench::core {
 

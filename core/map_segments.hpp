@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/filter/filter_state.hpp"
+#include "core/estimator/filter/filter_state.hpp"
 
 namespace fusebench::core {
 

@@ -7,11 +7,11 @@
 #include "core/base/replay.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/recording_estimator.hpp"
-#include "core/systems/system.hpp"
+#include "core/system/system.hpp"
 
 namespace fusebench::core {
 
-class PaperSystem final : public systems::System {
+class PaperSystem final : public system::System {
  public:
   /// Parameters as RecordingEstimator.
   PaperSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
@@ -22,7 +22,7 @@ class PaperSystem final : public systems::System {
   [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return estimator_.revise(); }
   [[nodiscard]] const loops::LoopClosure* loops() const override { return estimator_.loops(); }
-  [[nodiscard]] systems::Surface take_surface() override { return std::move(estimator_).take_model(); }
+  [[nodiscard]] system::Surface take_surface() override { return std::move(estimator_).take_model(); }
 
  private:
   RecordingEstimator estimator_;

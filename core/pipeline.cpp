@@ -6,15 +6,15 @@
 #include <optional>
 #include <utility>
 
-#include "core/acceptance/surviving_patches.hpp"
-#include "core/acceptance/update_tests.hpp"
 #include "core/config/config.hpp"
-#include "core/filter/pose_clones.hpp"
-#include "core/filter/state_validity.hpp"
+#include "core/estimator/acceptance/surviving_patches.hpp"
+#include "core/estimator/acceptance/update_tests.hpp"
+#include "core/estimator/filter/pose_clones.hpp"
+#include "core/estimator/filter/state_validity.hpp"
+#include "core/estimator/measurement/patch_measurement.hpp"
+#include "core/estimator/prediction/initialisation.hpp"
+#include "core/estimator/prediction/motion_prior.hpp"
 #include "core/frames_without_update.hpp"
-#include "core/measurement/patch_measurement.hpp"
-#include "core/prediction/initialisation.hpp"
-#include "core/prediction/motion_prior.hpp"
 
 namespace fusebench::core {
 

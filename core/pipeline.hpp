@@ -10,11 +10,11 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/filter/iekf.hpp"
+#include "core/estimator/filter/iekf.hpp"
+#include "core/estimator/health/frame_report.hpp"
+#include "core/estimator/patches/patches.hpp"
 #include "core/frame_preparation.hpp"
 #include "core/frame_update.hpp"
-#include "core/health/frame_report.hpp"
-#include "core/patches/patches.hpp"
 #include "core/tracking_state.hpp"
 
 namespace fusebench::core {

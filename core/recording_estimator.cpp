@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/acceptance/fusion_gate.hpp"
-#include "core/acceptance/recording_start.hpp"
 #include "core/config/config.hpp"
-#include "core/filter/moved_state.hpp"
-#include "core/filter/pose_clones.hpp"
+#include "core/estimator/acceptance/fusion_gate.hpp"
+#include "core/estimator/acceptance/recording_start.hpp"
+#include "core/estimator/filter/moved_state.hpp"
+#include "core/estimator/filter/pose_clones.hpp"
+#include "core/estimator/prediction/initialisation.hpp"
 #include "core/map_segments.hpp"
 #include "core/pipeline.hpp"
-#include "core/prediction/initialisation.hpp"
 #include "core/tracking_state.hpp"
 
 namespace fusebench::core {

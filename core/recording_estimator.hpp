@@ -11,9 +11,9 @@
 #include "core/base/replay.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/health/frame_report.hpp"
-#include "core/loops/loop_closure.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/health/frame_report.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
+#include "core/estimator/places/loops/loop_closure.hpp"
 
 namespace fusebench::core {
 

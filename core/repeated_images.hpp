@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "core/base/io/fingerprint.hpp"
 #include "core/base/types.hpp"
-#include "core/io/fingerprint.hpp"
 
 namespace fusebench::core {
 

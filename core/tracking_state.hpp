@@ -5,20 +5,20 @@
 #include <optional>
 #include <vector>
 
-#include "core/acceptance/fusion_gate.hpp"
-#include "core/alignment/tracking_reference.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/filter/color_drift.hpp"
-#include "core/filter/filter_state.hpp"
-#include "core/loops/loop_closure.hpp"
-#include "core/loops/pending_revisits.hpp"
-#include "core/measurement/residual_scale.hpp"
-#include "core/patches/patches.hpp"
-#include "core/prediction/motion_prior.hpp"
-#include "core/relocalisation/relocalisation.hpp"
+#include "core/estimator/acceptance/fusion_gate.hpp"
+#include "core/estimator/alignment/tracking_reference.hpp"
+#include "core/estimator/filter/color_drift.hpp"
+#include "core/estimator/filter/filter_state.hpp"
+#include "core/estimator/measurement/residual_scale.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
+#include "core/estimator/patches/patches.hpp"
+#include "core/estimator/places/loops/loop_closure.hpp"
+#include "core/estimator/places/loops/pending_revisits.hpp"
+#include "core/estimator/places/relocalisation/relocalisation.hpp"
+#include "core/estimator/prediction/motion_prior.hpp"
 #include "core/repeated_images.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::core {
 

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Checks the rooms: the folders, libraries and namespaces that CMakeLists.txt lists in the order of the data's way.
+"""Checks the rooms: the folders and namespaces that CMakeLists.txt lists in the order of the data flow, by library.
 
 Usage: scripts/check_includes.py [ROOT]
 
 Below ROOT (default: this repository) it checks that
   - every source of core, datasets and eval lies in the folder of a room, and every room has sources
-  - a room uses only rooms that stand before it, and its files include those rooms only that it says it uses, all of them
+  - a room uses only rooms before it, and its files include exactly the rooms that it declares
   - a room has at most 15 units (a header with its source)
-  - a file's namespace is its room's: fusebench:: and the folder below core, datasets or eval
+  - a file's namespace is its room's: fusebench:: and the folders below the layer (core, datasets, eval) and below folders that group
+    rooms by role (ROLES)
   - core includes neither datasets nor eval, datasets does not include eval, metrics include neither datasets nor estimator
   - only the rooms that run the estimator include both the recordings and the pipeline
   - nothing outside tests includes tests, and quoted paths start at the repository root
@@ -19,6 +20,9 @@ import sys
 
 LAYERS = ("core", "datasets", "eval")
 MOST_UNITS = 15
+# Folders that group rooms by role. They are not part of the namespaces of the rooms inside.
+ROLES = ("core/base", "core/config", "core/estimator", "core/estimator/model", "core/estimator/places", "datasets/recording",
+         "eval/metrics", "eval/record", "eval/run", "eval/suites", "eval/compare", "eval/report")
 # What judges an estimator knows trajectories, meshes and pixels from anywhere, and nothing of how they were made.
 METRICS = {"metrics", "trajectory_files", "trajectory_error", "reference_clock", "mesh_error"}
 ESTIMATOR = {"prediction", "preprocessing", "patches", "measurement", "relocalisation", "health", "core"}
@@ -49,8 +53,9 @@ def namespace_of(folder):
         return "fusebench"
     if folder == "core/config/groups":
         return "fusebench::config"
-    parts = folder.split("/")
-    return "::".join(["fusebench", *(parts[1:] or parts)])
+    inside = [role for role in (*LAYERS, *ROLES) if folder.startswith(role + "/")]
+    parts = folder[len(max(inside, key=len)) + 1:] if inside else folder
+    return "::".join(["fusebench", *parts.split("/")])
 
 
 class Check:

@@ -8,11 +8,11 @@
 #include <concepts>
 #include <optional>
 
+#include "core/base/io/fingerprint.hpp"
 #include "core/base/nearest_name.hpp"
 #include "core/base/printable.hpp"
 #include "core/config/config.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/io/fingerprint.hpp"
 
 namespace fusebench::config {
 

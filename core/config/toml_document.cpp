@@ -15,8 +15,8 @@
 #define TOML_FLOAT_CHARCONV 1
 #include <toml++/toml.h>
 
+#include "core/base/io/input_file.hpp"
 #include "core/base/printable.hpp"
-#include "core/io/input_file.hpp"
 
 namespace fusebench::config {
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
+#include "core/base/io/text_table.hpp"
 #include "core/base/nearest_name.hpp"
-#include "core/io/text_table.hpp"
 
 namespace fusebench::calibration {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
+#include "core/base/io/lower_case.hpp"
 #include "core/base/printable.hpp"
-#include "core/io/lower_case.hpp"
 
 namespace fusebench::calibration {
 

@@ -10,9 +10,9 @@
 #include <system_error>
 #include <vector>
 
-#include "core/io/bounded_text.hpp"
-#include "core/io/input_file.hpp"
-#include "core/io/text_table.hpp"
+#include "core/base/io/bounded_text.hpp"
+#include "core/base/io/input_file.hpp"
+#include "core/base/io/text_table.hpp"
 
 namespace fusebench::calibration {
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <system_error>
 
+#include "core/base/io/input_file.hpp"
 #include "core/base/printable.hpp"
-#include "core/io/input_file.hpp"
 
 namespace fusebench::images {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
-#include "core/io/fingerprint.hpp"
+#include "core/base/io/fingerprint.hpp"
 
 namespace fusebench::images {
 

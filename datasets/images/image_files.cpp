@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/io/input_file.hpp"
+#include "core/base/io/input_file.hpp"
 #include "datasets/images/exr_check.hpp"
 #include "datasets/images/file_content.hpp"
 #include "datasets/images/image_library_loader.hpp"

@@ -12,7 +12,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/image.hpp"
-#include "core/io/fingerprint.hpp"
+#include "core/base/io/fingerprint.hpp"
 
 namespace fusebench::images {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/io/input_file.hpp"
+#include "core/base/io/input_file.hpp"
 
 namespace fusebench::images {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "core/io/input_file.hpp"
+#include "core/base/io/input_file.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 

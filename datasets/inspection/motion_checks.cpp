@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/measures/camera_turns.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 #include "datasets/inspection/misreadings.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 #include "datasets/recording/reader_words.hpp"

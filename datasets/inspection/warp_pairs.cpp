@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 
 namespace fusebench::inspection {

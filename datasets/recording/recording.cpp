@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/io/fingerprint.hpp"
+#include "core/base/io/fingerprint.hpp"
 
 namespace fusebench::recording {
 

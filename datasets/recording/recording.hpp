@@ -12,7 +12,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/filter/stamped_state.hpp"
+#include "core/estimator/filter/stamped_state.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 
 namespace fusebench::recording {

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
+#include "core/base/io/text_table.hpp"
 #include "core/base/types.hpp"
-#include "core/io/text_table.hpp"
 
 namespace fusebench::recording {
 

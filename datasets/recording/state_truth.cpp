@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/io/stamped_rows.hpp"
+#include "core/base/io/stamped_rows.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 
 namespace fusebench::recording {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/filter/stamped_state.hpp"
+#include "core/estimator/filter/stamped_state.hpp"
 
 namespace fusebench::recording {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <variant>
 
+#include "core/base/io/staged_folder.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/io/staged_folder.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
 #include "datasets/simulator/routes/route_motion.hpp"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/base/io/fingerprint.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/io/fingerprint.hpp"
 #include "datasets/simulator/realism.hpp"
 #include "datasets/simulator/simulation.hpp"
 

@@ -12,8 +12,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/trajectory/trajectory.hpp"
 #include "core/base/upper_median.hpp"
-#include "core/trajectory/trajectory.hpp"
 #include "datasets/synthetic_imu/pose_spline.hpp"
 
 namespace fusebench::synthetic_imu {

@@ -13,9 +13,9 @@
 
 #include "core/config/toml_document.hpp"
 #include "eval/record/record.hpp"
-#include "eval/registry/run_numbers.hpp"
-#include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_identity.hpp"
+#include "eval/record/registry/run_numbers.hpp"
+#include "eval/record/run_files/record_files.hpp"
+#include "eval/record/run_files/run_identity.hpp"
 
 namespace fusebench::compare {
 

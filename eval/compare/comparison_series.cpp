@@ -8,7 +8,7 @@
 #include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
 #include "eval/metrics/statistics.hpp"
-#include "eval/registry/run_numbers.hpp"
+#include "eval/record/registry/run_numbers.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::compare {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "core/io/bounded_text.hpp"
-#include "core/io/input_file.hpp"
-#include "core/io/text_table.hpp"
+#include "core/base/io/bounded_text.hpp"
+#include "core/base/io/input_file.hpp"
+#include "core/base/io/text_table.hpp"
 
 namespace fusebench::compare {
 

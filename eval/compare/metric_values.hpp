@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "eval/registry/run_metric.hpp"
+#include "eval/record/registry/run_metric.hpp"
 
 namespace fusebench::compare {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "eval/compare/comparison.hpp"
-#include "eval/registry/replicated_numbers.hpp"
+#include "eval/record/registry/replicated_numbers.hpp"
 
 namespace fusebench::compare {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/run_files/found_runs.hpp"
-#include "eval/run_files/run_identity.hpp"
+#include "eval/record/run_files/found_runs.hpp"
+#include "eval/record/run_files/run_identity.hpp"
 
 namespace fusebench::compare {
 

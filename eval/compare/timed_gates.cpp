@@ -9,7 +9,7 @@
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/rank_test.hpp"
 #include "eval/metrics/statistics.hpp"
-#include "eval/registry/run_numbers.hpp"
+#include "eval/record/registry/run_numbers.hpp"
 
 namespace fusebench::compare {
 

@@ -16,7 +16,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/intensity_residual.hpp"
-#include "core/io/input_file.hpp"
+#include "core/base/io/input_file.hpp"
 
 namespace fusebench::metrics {
 

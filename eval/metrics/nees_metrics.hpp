@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/filter/stamped_state.hpp"
+#include "core/estimator/filter/stamped_state.hpp"
 #include "eval/metrics/statistics.hpp"
 
 namespace fusebench::metrics {
 
-/// A part of the error state (core/filter/filter_state.hpp) whose consistency is told apart.
+/// A part of the error state (core/estimator/filter/filter_state.hpp) whose consistency is told apart.
 struct StatePart {
   std::string_view name;
   int offset = 0;

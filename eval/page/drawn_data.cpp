@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/io/text_table.hpp"
+#include "core/base/io/text_table.hpp"
 #include "eval/text/markup_text.hpp"
 
 namespace fusebench::page {

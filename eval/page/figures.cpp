@@ -12,9 +12,9 @@
 #include <set>
 #include <thread>
 
-#include "core/io/fingerprint.hpp"
-#include "core/io/temporary_mark.hpp"
-#include "eval/process/child_processes.hpp"
+#include "core/base/io/fingerprint.hpp"
+#include "core/base/io/temporary_mark.hpp"
+#include "eval/record/process/child_processes.hpp"
 #include "eval/text/control_characters.hpp"
 #include "eval/text/text_file.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/base/error.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
 
 namespace fusebench::record {
 

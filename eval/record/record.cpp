@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/io/bounded_text.hpp"
+#include "core/base/io/bounded_text.hpp"
 #include "eval/record/record_metrics.hpp"
 #include "eval/record/record_parts.hpp"
 #include "eval/text/json_text.hpp"

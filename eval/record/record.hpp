@@ -13,19 +13,19 @@
 
 #include "core/base/error.hpp"
 #include "core/config/options.hpp"
-#include "core/filter/sensor_constants.hpp"
+#include "core/estimator/filter/sensor_constants.hpp"
 #include "datasets/calibration/camera_model.hpp"
-#include "eval/loop_error/loop_metrics.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/metrics/intensity_readings.hpp"
+#include "eval/metrics/loop_error/loop_metrics.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/nees_metrics.hpp"
+#include "eval/metrics/reference_clock/clocked_errors.hpp"
 #include "eval/metrics/residual_metrics.hpp"
+#include "eval/metrics/trajectory_error/ate_rpe.hpp"
+#include "eval/metrics/trajectory_error/fitted_offset.hpp"
+#include "eval/metrics/trajectory_error/silent_failures.hpp"
 #include "eval/record/duration_histogram.hpp"
-#include "eval/reference_clock/clocked_errors.hpp"
-#include "eval/trajectory_error/ate_rpe.hpp"
-#include "eval/trajectory_error/fitted_offset.hpp"
-#include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::record {
 

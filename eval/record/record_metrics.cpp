@@ -4,10 +4,10 @@
 #include <limits>
 #include <string>
 
-#include "eval/mesh_error/mesh_json.hpp"
+#include "eval/metrics/mesh_error/mesh_json.hpp"
+#include "eval/metrics/reference_clock/clock_json.hpp"
 #include "eval/metrics/statistics_json.hpp"
-#include "eval/reference_clock/clock_json.hpp"
-#include "eval/trajectory_error/alignment_json.hpp"
+#include "eval/metrics/trajectory_error/alignment_json.hpp"
 
 namespace fusebench::record {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "core/trajectory/trajectory.hpp"
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
 

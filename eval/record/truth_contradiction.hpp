@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "eval/record/record.hpp"
 
 namespace fusebench::record {

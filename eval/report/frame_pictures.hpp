@@ -12,7 +12,7 @@
 #include "core/base/types.hpp"
 #include "eval/page/page.hpp"
 #include "eval/report/patch_pictures.hpp"
-#include "eval/run_charts/run_series.hpp"
+#include "eval/report/run_charts/run_series.hpp"
 
 namespace fusebench::report {
 

@@ -11,10 +11,10 @@
 #include <variant>
 
 #include "core/base/geometry.hpp"
-#include "eval/loop_error/loop_metrics.hpp"
-#include "eval/run_charts/chart_parts.hpp"
-#include "eval/run_charts/loop_charts.hpp"
-#include "eval/tables/systems_table.hpp"
+#include "eval/compare/tables/systems_table.hpp"
+#include "eval/metrics/loop_error/loop_metrics.hpp"
+#include "eval/report/run_charts/chart_parts.hpp"
+#include "eval/report/run_charts/loop_charts.hpp"
 #include "eval/text/plain_table.hpp"
 
 namespace fusebench::report {

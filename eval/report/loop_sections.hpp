@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
-#include "eval/run_charts/run_series.hpp"
+#include "eval/report/run_charts/run_series.hpp"
 
 namespace fusebench::report {
 

@@ -7,16 +7,16 @@
 #include <system_error>
 #include <utility>
 
-#include "core/mesh/ply_file.hpp"
-#include "eval/mesh_error/error_colors.hpp"
-#include "eval/mesh_error/mesh_clustering.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
-#include "eval/mesh_error/surfel_discs.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "eval/metrics/mesh_error/error_colors.hpp"
+#include "eval/metrics/mesh_error/mesh_clustering.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/mesh_error/surfel_discs.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/page/image_source.hpp"
+#include "eval/record/run_files/record_files.hpp"
 #include "eval/report/model_picture.hpp"
 #include "eval/report/narrowed_image.hpp"
-#include "eval/run_files/record_files.hpp"
 
 namespace fusebench::report {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "datasets/simulator/rays/ray_caster.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
 
 namespace fusebench::report {
 

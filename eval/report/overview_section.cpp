@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "eval/findings/overview.hpp"
+#include "eval/compare/findings/overview.hpp"
 
 namespace fusebench::report {
 

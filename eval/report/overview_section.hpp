@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include "eval/findings/ranking.hpp"
+#include "eval/compare/findings/ranking.hpp"
+#include "eval/compare/tables/table.hpp"
 #include "eval/page/page.hpp"
-#include "eval/tables/table.hpp"
 
 namespace fusebench::report {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/image.hpp"
-#include "eval/run_files/patch_table.hpp"
+#include "eval/record/run_files/patch_table.hpp"
 
 namespace fusebench::report {
 

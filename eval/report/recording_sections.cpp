@@ -11,15 +11,15 @@
 
 #include "eval/page/figures.hpp"
 #include "eval/page/image_source.hpp"
+#include "eval/record/run_files/record_files.hpp"
+#include "eval/record/run_files/run_set.hpp"
 #include "eval/report/loop_sections.hpp"
 #include "eval/report/model_scene.hpp"
 #include "eval/report/patch_pictures.hpp"
+#include "eval/report/run_charts/profile_charts.hpp"
+#include "eval/report/run_charts/run_charts.hpp"
+#include "eval/report/run_charts/run_series.hpp"
 #include "eval/report/run_configuration.hpp"
-#include "eval/run_charts/profile_charts.hpp"
-#include "eval/run_charts/run_charts.hpp"
-#include "eval/run_charts/run_series.hpp"
-#include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_set.hpp"
 
 namespace fusebench::report {
 

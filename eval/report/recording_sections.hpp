@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/report/frame_pictures.hpp"
 #include "eval/report/runs_of_recording.hpp"
-#include "eval/run_files/found_runs.hpp"
-#include "eval/speed_failures/speed_sections.hpp"
+#include "eval/report/speed_failures/speed_sections.hpp"
 
 namespace fusebench::report {
 

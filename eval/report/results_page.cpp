@@ -8,11 +8,11 @@
 #include <set>
 
 #include "eval/page/series_colours.hpp"
+#include "eval/record/run_files/run_set.hpp"
 #include "eval/report/recording_sections.hpp"
 #include "eval/report/runs_of_recording.hpp"
+#include "eval/report/speed_failures/speed_sections.hpp"
 #include "eval/report/summary_sections.hpp"
-#include "eval/run_files/run_set.hpp"
-#include "eval/speed_failures/speed_sections.hpp"
 
 namespace fusebench::report {
 

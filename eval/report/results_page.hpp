@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/report/frame_pictures.hpp"
 #include "eval/report/recording_sections.hpp"
-#include "eval/run_files/found_runs.hpp"
 
 namespace fusebench::report {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "eval/page/page.hpp"
-#include "eval/run_files/found_runs.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 
 namespace fusebench::report {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "eval/record/data_labels.hpp"
-#include "eval/run_files/run_set.hpp"
+#include "eval/record/run_files/run_set.hpp"
 
 namespace fusebench::report {
 

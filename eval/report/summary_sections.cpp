@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "eval/findings/findings.hpp"
-#include "eval/findings/ranking.hpp"
+#include "eval/compare/findings/findings.hpp"
+#include "eval/compare/findings/ranking.hpp"
+#include "eval/compare/tables/systems_table.hpp"
+#include "eval/compare/tables/table.hpp"
 #include "eval/report/overview_section.hpp"
-#include "eval/tables/systems_table.hpp"
-#include "eval/tables/table.hpp"
 
 namespace fusebench::report {
 

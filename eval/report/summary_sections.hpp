@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
-#include "eval/run_files/found_runs.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 
 namespace fusebench::report {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "eval/run_files/option_order.hpp"
+#include "eval/record/run_files/option_order.hpp"
 
 namespace fusebench::report {
 

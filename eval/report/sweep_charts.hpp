@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "eval/aggregate/effects.hpp"
-#include "eval/aggregate/pareto.hpp"
+#include "eval/compare/aggregate/effects.hpp"
+#include "eval/compare/aggregate/pareto.hpp"
 #include "eval/page/page.hpp"
 
 namespace fusebench::report {

@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "eval/aggregate/best.hpp"
-#include "eval/aggregate/configurations.hpp"
-#include "eval/aggregate/effects.hpp"
-#include "eval/aggregate/option_bins.hpp"
-#include "eval/aggregate/pareto.hpp"
-#include "eval/registry/run_metric.hpp"
+#include "eval/compare/aggregate/best.hpp"
+#include "eval/compare/aggregate/configurations.hpp"
+#include "eval/compare/aggregate/effects.hpp"
+#include "eval/compare/aggregate/option_bins.hpp"
+#include "eval/compare/aggregate/pareto.hpp"
+#include "eval/record/registry/run_metric.hpp"
 #include "eval/report/sweep_charts.hpp"
 
 namespace fusebench::report {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/aggregate/run_rows.hpp"
+#include "eval/compare/aggregate/run_rows.hpp"
 #include "eval/page/page.hpp"
 
 namespace fusebench::report {

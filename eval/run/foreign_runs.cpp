@@ -6,22 +6,22 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/io/fingerprint.hpp"
+#include "core/base/io/staged_folder.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config_access.hpp"
-#include "core/io/fingerprint.hpp"
-#include "core/io/staged_folder.hpp"
-#include "core/trajectory/trajectory_file.hpp"
 #include "datasets/recording/recording.hpp"
-#include "eval/external/foreign_mesh.hpp"
-#include "eval/external/frame_poses.hpp"
-#include "eval/external/program_results.hpp"
-#include "eval/external/system_name.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
+#include "eval/record/external/foreign_mesh.hpp"
+#include "eval/record/external/frame_poses.hpp"
+#include "eval/record/external/program_results.hpp"
+#include "eval/record/external/system_name.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/record/truth_contradiction.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
-#include "eval/run_files/found_runs.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::run {
 

@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "datasets/open_recording.hpp"
-#include "eval/external/system_trajectory.hpp"
+#include "eval/record/external/system_trajectory.hpp"
 #include "eval/record/record.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_placement.hpp"

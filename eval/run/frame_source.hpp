@@ -6,7 +6,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/health/stage_times.hpp"
+#include "core/estimator/health/stage_times.hpp"
 #include "datasets/recording/recording.hpp"
 
 namespace fusebench::run {

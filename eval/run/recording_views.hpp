@@ -5,7 +5,7 @@
 
 #include "core/base/error.hpp"
 #include "datasets/recording/recording.hpp"
-#include "eval/mesh_error/mesh_views.hpp"
+#include "eval/metrics/mesh_error/mesh_views.hpp"
 
 namespace fusebench::run {
 

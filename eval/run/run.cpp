@@ -14,34 +14,34 @@
 
 #include "core/all_systems.hpp"
 #include "core/base/error.hpp"
+#include "core/base/io/staged_folder.hpp"
+#include "core/base/trajectory/noisy_pose.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/io/staged_folder.hpp"
-#include "core/loops/loop_closure.hpp"
-#include "core/loops/loop_tables.hpp"
-#include "core/meshing/marching_cubes.hpp"
-#include "core/systems/system.hpp"
-#include "core/trajectory/noisy_pose.hpp"
-#include "core/trajectory/trajectory_file.hpp"
-#include "eval/loop_error/loop_error.hpp"
-#include "eval/loop_error/loop_metrics.hpp"
-#include "eval/preparation/preparation.hpp"
-#include "eval/preparation/prepared_recording.hpp"
-#include "eval/preparation/sensor_check.hpp"
-#include "eval/profile/trace_file.hpp"
+#include "core/estimator/model/meshing/marching_cubes.hpp"
+#include "core/estimator/places/loops/loop_closure.hpp"
+#include "core/estimator/places/loops/loop_tables.hpp"
+#include "core/system/system.hpp"
+#include "eval/metrics/loop_error/loop_error.hpp"
+#include "eval/metrics/loop_error/loop_metrics.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
+#include "eval/record/profile/trace_file.hpp"
 #include "eval/record/record.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/record/run_files/filter_tables.hpp"
+#include "eval/record/run_files/patch_table.hpp"
 #include "eval/record/truth_contradiction.hpp"
 #include "eval/run/foreign_runs.hpp"
+#include "eval/run/preparation/preparation.hpp"
+#include "eval/run/preparation/prepared_recording.hpp"
+#include "eval/run/preparation/sensor_check.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 #include "eval/run/run_frames.hpp"
-#include "eval/run_files/filter_tables.hpp"
-#include "eval/run_files/patch_table.hpp"
 
 namespace fusebench::run {
 
@@ -72,8 +72,8 @@ class SurfaceMesher {
 };
 
 /// Makes the mesh of the surface, which ends with it: metrics need the memory.
-record::RecordedModel make_mesh(systems::Surface surface, const config::Config& config,
-                                const Workers& workers, RunProgress& progress) {
+record::RecordedModel make_mesh(system::Surface surface, const config::Config& config, const Workers& workers,
+                                RunProgress& progress) {
   // What else the system had (keyframes, images) is gone, and the mesh needs the room.
   record::return_freed_memory();
   SurfaceMesher mesher(config, workers);
@@ -187,7 +187,7 @@ LoopResults loop_results(const loops::LoopClosure* closure, const Trajectory& tr
 
 /// The revised poses of the system; nothing if it has none, or the run did not come to its end. What goes
 /// wrong ends the run and is in the progress. Errors: run_failed (a stop).
-Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
+Result<std::optional<Trajectory>> revised_poses(system::System& system, RunProgress& progress,
                                                 const RunControl& control) {
   if (progress.status == record::RunStatus::failed || progress.frames.tracked == 0) return std::nullopt;
   auto revised = system.revise();
@@ -243,7 +243,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl
   const Trajectory truth = record::true_trajectory(run.recording, record::frame_stamps(run.recording));
   const LoopResults loops =
       loop_results(system->loops(), truth, run.recording.rig.camera, config.depth, config.loops);
-  systems::Surface surface = system->take_surface();
+  system::Surface surface = system->take_surface();
   system.reset();
   record.model = make_mesh(std::move(surface), config, workers, *progress);
   const record::ProcessCost cost = meter.cost();

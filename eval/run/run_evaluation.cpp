@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/mesh/ply_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
-#include "core/mesh/ply_file.hpp"
-#include "core/trajectory/trajectory.hpp"
-#include "eval/pose_intensity/pose_intensity.hpp"
+#include "eval/metrics/reference_clock/clocked_errors.hpp"
+#include "eval/metrics/trajectory_error/fitted_offset.hpp"
+#include "eval/metrics/trajectory_error/pose_alignment.hpp"
+#include "eval/metrics/trajectory_error/silent_failures.hpp"
+#include "eval/record/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
-#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run/recording_views.hpp"
-#include "eval/trajectory_error/fitted_offset.hpp"
-#include "eval/trajectory_error/pose_alignment.hpp"
-#include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::run {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/mesh/ply_file.hpp"
-#include "eval/run_files/record_files.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "eval/record/run_files/record_files.hpp"
 
 namespace fusebench::run {
 

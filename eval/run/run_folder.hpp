@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/base/io/staged_folder.hpp"
 #include "core/base/types.hpp"
-#include "core/io/staged_folder.hpp"
 #include "eval/record/record.hpp"
 
 namespace fusebench::run {

@@ -169,7 +169,7 @@ Result<void> FrameReplay::visit(const FrameVisitor& visitor) const {
   return {};
 }
 
-Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system, FrameReplay& replay,
+Result<RunProgress> process_frames(const PreparedRun& run, system::System& system, FrameReplay& replay,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;
   const recording::Recording& recording = run.recording;

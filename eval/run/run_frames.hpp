@@ -6,18 +6,18 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/base/io/staged_folder.hpp"
 #include "core/base/replay.hpp"
-#include "core/health/frame_report.hpp"
-#include "core/io/staged_folder.hpp"
-#include "core/systems/system.hpp"
-#include "eval/profile/run_profile.hpp"
+#include "core/estimator/health/frame_report.hpp"
+#include "core/system/system.hpp"
+#include "eval/record/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
+#include "eval/record/run_files/filter_tables.hpp"
+#include "eval/record/run_files/frame_table.hpp"
+#include "eval/record/run_files/patch_table.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_placement.hpp"
-#include "eval/run_files/filter_tables.hpp"
-#include "eval/run_files/frame_table.hpp"
-#include "eval/run_files/patch_table.hpp"
 
 namespace fusebench::run {
 
@@ -61,7 +61,7 @@ struct RunProgress {
 /// Processes all frames; the replay, which the system was made with, follows. intensity.bin goes into
 /// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; any other
 /// failure ends the run and is stored in the progress.
-[[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
+[[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, system::System& system,
                                                  FrameReplay& replay, const io::StagedFolder& folder,
                                                  const RunControl& control);
 

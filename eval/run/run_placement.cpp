@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/io/fingerprint.hpp"
+#include "core/base/io/fingerprint.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/record_origin.hpp"
-#include "eval/run_files/record_files.hpp"
+#include "eval/record/run_files/record_files.hpp"
 
 namespace fusebench::run {
 

@@ -9,8 +9,8 @@
 
 #include "core/base/error.hpp"
 #include "eval/record/record.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/run/run_specification.hpp"
-#include "eval/run_files/found_runs.hpp"
 
 namespace fusebench::run {
 

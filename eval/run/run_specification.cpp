@@ -13,8 +13,8 @@
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
-#include "eval/preparation/preparation.hpp"
-#include "eval/run_files/run_identity.hpp"
+#include "eval/record/run_files/run_identity.hpp"
+#include "eval/run/preparation/preparation.hpp"
 
 namespace fusebench::run {
 

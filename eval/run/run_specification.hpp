@@ -11,7 +11,7 @@
 #include "core/base/error.hpp"
 #include "core/config/config_access.hpp"
 #include "datasets/open_recording.hpp"
-#include "eval/external/external_program.hpp"
+#include "eval/record/external/external_program.hpp"
 
 namespace fusebench::run {
 

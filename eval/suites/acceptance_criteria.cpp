@@ -9,7 +9,7 @@
 
 #include "core/base/nearest_name.hpp"
 #include "core/config/variants.hpp"
-#include "eval/registry/run_metric.hpp"
+#include "eval/record/registry/run_metric.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench::suites {

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "core/io/staged_file.hpp"
+#include "core/base/io/staged_file.hpp"
 
 namespace fusebench::text {
 

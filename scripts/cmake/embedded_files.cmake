@@ -18,8 +18,8 @@ endfunction()
 
 fusebench_embed_toml(catalogue_files recordings datasets/calibration/recording_catalogue.hpp calibration CatalogueFile
   catalogue_files)
-fusebench_embed_toml(published_files paper eval/tables/published_table.hpp tables PublishedFile published_files)
-fusebench_embed_toml(reproduction_files reproduction eval/reproduction/table1_protocol.hpp reproduction ReproductionFile
+fusebench_embed_toml(published_files paper eval/compare/tables/published_table.hpp tables PublishedFile published_files)
+fusebench_embed_toml(reproduction_files reproduction eval/compare/reproduction/table1_protocol.hpp reproduction ReproductionFile
   reproduction_files)
 
 # Pages carry their style, script and the chart library within themselves.

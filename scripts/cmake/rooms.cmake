@@ -1,4 +1,4 @@
-# A room is a folder, a library and a namespace. It uses only rooms that stand before it in CMakeLists.txt.
+# A library is a role: a list of rooms. A room is a folder and a namespace; it uses only rooms before it in CMakeLists.txt.
 
 # Flags of every target of ours. -march is public: it decides the alignment of Eigen's types, so all code that shares them
 # must agree. Debian builds Ceres (a static library) without AVX, so that Eigen's fixed-size types align to 16 bytes in it; here
@@ -41,65 +41,83 @@ function(fusebench_precompile target headers level)
   endif()
 endfunction()
 
-# fusebench_room(FOLDER [PROGRAM] [APART] [ALONE NAME...] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...]
-#                [OPTIMIZE LEVEL] [HEADERS SET])
-# Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench). They are compiled
-# as one (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for each
-# compilation. With that off, a change of one source compiles that one alone, and a missing #include shows.
-#   APART     each source is compiled alone: most of them give the same names other meanings
-#   ALONE     sources (without .cpp) that are, since another one gives one of their names another meaning, or since they hide a class
-#             with members of types of their own, of which GCC warns wherever the source is not the file that it was given
-#   USES      last names of the rooms that its files include
-#   SOURCES   generated files beside those of the folder
-#   OPTIMIZE  level of a release build, 3 unless given. Rooms that only read, write and print take 1: half the time to compile,
-#             and not a bit of difference in what they compute.
-#   HEADERS   precompiled headers (see above), "values" unless given, or "json" with OPTIMIZE; "none" for rooms whose libraries
-#             define macros
-function(fusebench_room folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;APART" "OPTIMIZE;HEADERS" "ALONE;USES;PUBLIC;PRIVATE;SOURCES")
+# fusebench_library(NAME [PROGRAM] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [OPTIMIZE LEVEL] [HEADERS SET])
+# Defines the static library fusebench_NAME (PROGRAM: the executable NAME). The calls of fusebench_room() that follow add its sources.
+#   OPTIMIZE  level of a release build, 3 unless given. Libraries that only read, write and print take 1: half the time to compile,
+#             and the same bits in what they compute
+#   HEADERS   precompiled headers (see above), "values" unless given, or "json" with OPTIMIZE
+function(fusebench_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM" "OPTIMIZE;HEADERS" "PUBLIC;PRIVATE")
   if(arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "fusebench_room(${folder}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
+    message(FATAL_ERROR "fusebench_library(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
-  get_filename_component(name ${folder} NAME)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
-  list(TRANSFORM arg_USES PREPEND fusebench_ OUTPUT_VARIABLE used)
   if(arg_PROGRAM)
-    set(room fusebench)
-    add_executable(${room} ${sources} ${arg_SOURCES})
+    set(library ${name})
+    add_executable(${library})
   else()
-    set(room fusebench_${name})
-    set_property(GLOBAL APPEND PROPERTY FUSEBENCH_LIBRARIES ${room})
-    set(kind STATIC)
-    if(NOT sources AND NOT arg_SOURCES)  # headers only
-      set(kind INTERFACE)
-    endif()
-    add_library(${room} ${kind} ${sources} ${arg_SOURCES})
+    set(library fusebench_${name})
+    add_library(${library} STATIC)
+    set_property(GLOBAL APPEND PROPERTY FUSEBENCH_LIBRARIES ${library})
   endif()
-  set_target_properties(${room} PROPERTIES FUSEBENCH_FOLDER ${folder} FUSEBENCH_USES "${arg_USES}")
-  if(kind STREQUAL INTERFACE)
-    target_link_libraries(${room} INTERFACE ${used} ${arg_PUBLIC})
-    return()
-  endif()
-  fusebench_target_options(${room})
+  set_property(GLOBAL PROPERTY FUSEBENCH_CURRENT_LIBRARY ${library})
+  fusebench_target_options(${library})
+  target_link_libraries(${library} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   set(level 3)
   if(arg_OPTIMIZE)
     set(level ${arg_OPTIMIZE})
-    target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O${level}>)
+    target_compile_options(${library} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   endif()
-  if(FUSEBENCH_UNITY AND NOT arg_APART)
-    set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
-    foreach(source IN LISTS arg_ALONE)
-      set_source_files_properties(${PROJECT_SOURCE_DIR}/${folder}/${source}.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    endforeach()
+  if(FUSEBENCH_UNITY)
+    set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   endif()
-  target_link_libraries(${room} PUBLIC ${used} ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   if(NOT arg_HEADERS AND arg_OPTIMIZE)
     set(arg_HEADERS json)  # one set of headers the fewer
   elseif(NOT arg_HEADERS)
     set(arg_HEADERS values)
   endif()
-  if(NOT arg_HEADERS STREQUAL none)
-    fusebench_precompile(${room} ${arg_HEADERS} ${level})
+  fusebench_precompile(${library} ${arg_HEADERS} ${level})
+endfunction()
+
+# fusebench_room(FOLDER [APART] [BARE] [ALONE NAME...] [USES ROOM...] [SOURCES FILE...])
+# Adds all sources in FOLDER to the library that was defined last. The name of the room is the last part of FOLDER. Up to 16 sources
+# of a library are compiled as one (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for
+# each compilation. With that off, a change of one source compiles that one alone, and a missing #include shows.
+#   APART     each source is compiled alone: most of them give the same names other meanings
+#   BARE      without precompiled headers, since the libraries of the sources define macros
+#   ALONE     sources (without .cpp) that are compiled alone, since another one gives one of their names another meaning, or since
+#             they hide a class with members of types of their own, of which GCC warns if the source is included by another one
+#   USES      names of the rooms that its files include; their libraries are linked
+#   SOURCES   generated files in addition to those of the folder
+function(fusebench_room folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "APART;BARE" "" "ALONE;USES;SOURCES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "fusebench_room(${folder}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  get_property(library GLOBAL PROPERTY FUSEBENCH_CURRENT_LIBRARY)
+  get_filename_component(name ${folder} NAME)
+  set_property(GLOBAL PROPERTY FUSEBENCH_LIBRARY_OF_${name} ${library})
+  set_property(GLOBAL PROPERTY FUSEBENCH_FOLDER_OF_${name} ${folder})
+  set_property(GLOBAL PROPERTY FUSEBENCH_USES_OF_${name} ${arg_USES})
+  foreach(used IN LISTS arg_USES)
+    get_property(other GLOBAL PROPERTY FUSEBENCH_LIBRARY_OF_${used})
+    if(NOT other)
+      message(FATAL_ERROR "fusebench_room(${folder}): there is no room ${used} before it")
+    elseif(NOT other STREQUAL library)
+      target_link_libraries(${library} PUBLIC ${other})
+    endif()
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  target_sources(${library} PRIVATE ${sources} ${arg_SOURCES})
+  if(arg_APART)
+    set(alone ${sources})
+  else()
+    list(TRANSFORM arg_ALONE REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/${folder}/\\1.cpp" OUTPUT_VARIABLE alone)
+  endif()
+  if(alone)
+    set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+  if(arg_BARE)
+    set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()
 
@@ -114,8 +132,8 @@ function(fusebench_folders_behind name output)
       continue()
     endif()
     list(APPEND seen ${next})
-    get_target_property(folder fusebench_${next} FUSEBENCH_FOLDER)
-    get_target_property(uses fusebench_${next} FUSEBENCH_USES)
+    get_property(folder GLOBAL PROPERTY FUSEBENCH_FOLDER_OF_${next})
+    get_property(uses GLOBAL PROPERTY FUSEBENCH_USES_OF_${next})
     list(APPEND folders ${folder})
     list(APPEND todo ${uses})
   endwhile()

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/config/config_access.hpp"
-#include "eval/aggregate/long_table.hpp"
-#include "eval/aggregate/run_rows.hpp"
+#include "eval/compare/aggregate/long_table.hpp"
+#include "eval/compare/aggregate/run_rows.hpp"
 #include "eval/record/record.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -6,10 +6,10 @@
 #include <map>
 #include <utility>
 
+#include "core/base/trajectory/trajectory.hpp"
 #include "core/config/config.hpp"
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
 #include "core/recording_estimator.hpp"
-#include "core/trajectory/trajectory.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
 #include "tests/support/camera_velocity.hpp"

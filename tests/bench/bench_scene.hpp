@@ -12,8 +12,8 @@
 #include "core/config/groups/frame_config.hpp"
 #include "core/config/groups/patches_config.hpp"
 #include "core/config/groups/tsdf_config.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 #include "tests/bench/scene_kinds.hpp"
 
 namespace fusebench::testing {

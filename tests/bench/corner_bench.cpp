@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/config/groups/patches_config.hpp"
-#include "core/patches/corner_selection.hpp"
+#include "core/estimator/patches/corner_selection.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"

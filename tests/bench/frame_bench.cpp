@@ -1,8 +1,8 @@
 // What happens to a frame before it is tracked: motion compensation, pyramid, depth gates.
 #include <benchmark/benchmark.h>
 
-#include "core/preprocessing/depth_gates.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/rates.hpp"

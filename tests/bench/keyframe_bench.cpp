@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/config/config.hpp"
-#include "core/relocalisation/keyframes.hpp"
+#include "core/estimator/places/relocalisation/keyframes.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"

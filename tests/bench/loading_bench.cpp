@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/io/fingerprint.hpp"
+#include "core/base/io/fingerprint.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/bench/golden_frames.hpp"
 #include "tests/bench/rates.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/simd/lanes.hpp"
+#include "core/base/simd/lanes.hpp"
 #include "tests/bench/rates.hpp"
 
 namespace fusebench {

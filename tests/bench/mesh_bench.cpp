@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/support/test_meshes.hpp"
 

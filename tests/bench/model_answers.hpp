@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/tsdf/band_blocks.hpp"
+#include "core/estimator/model/tsdf/band_blocks.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/support/felt_blocks.hpp"
 #include "tests/support/plain_field.hpp"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/meshing/marching_cubes.hpp"
+#include "core/estimator/model/meshing/marching_cubes.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/bench/rates.hpp"

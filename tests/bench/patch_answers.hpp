@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/patches/patch_lanes.hpp"
+#include "core/estimator/patches/patch_lanes.hpp"
 #include "tests/bench/patch_problem.hpp"
 
 namespace fusebench::testing {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/config/config.hpp"
-#include "core/filter/iekf.hpp"
-#include "core/measurement/patch_measurement.hpp"
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/estimator/filter/iekf.hpp"
+#include "core/estimator/measurement/patch_measurement.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/support/gated_depth.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "eval/trajectory_error/trajectory_evaluation.hpp"
+#include "eval/metrics/trajectory_error/trajectory_evaluation.hpp"
 #include "tests/bench/wandering_trajectory.hpp"
 
 namespace fusebench {

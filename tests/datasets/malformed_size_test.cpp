@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "core/config/toml_document.hpp"
-#include "datasets/reading/image_list.hpp"
-#include "datasets/reading/side_files.hpp"
+#include "datasets/recording/reading/image_list.hpp"
+#include "datasets/recording/reading/side_files.hpp"
 #include "tests/datasets/images/child_process.hpp"
 #include "tests/datasets/malformed_text.hpp"
 

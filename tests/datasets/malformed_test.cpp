@@ -4,13 +4,13 @@
 
 #include <cstdlib>
 
-#include "core/io/row_text.hpp"
-#include "core/trajectory/trajectory_file.hpp"
-#include "datasets/formats/tum/tum_lists.hpp"
-#include "datasets/formats/zr300/zr300_lists.hpp"
-#include "datasets/reading/associated_row.hpp"
-#include "datasets/reading/image_list.hpp"
-#include "datasets/reading/side_files.hpp"
+#include "core/base/io/row_text.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
+#include "datasets/recording/formats/tum/tum_lists.hpp"
+#include "datasets/recording/formats/zr300/zr300_lists.hpp"
+#include "datasets/recording/reading/associated_row.hpp"
+#include "datasets/recording/reading/image_list.hpp"
+#include "datasets/recording/reading/side_files.hpp"
 #include "tests/datasets/malformed_text.hpp"
 
 namespace fusebench {

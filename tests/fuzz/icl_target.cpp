@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/formats/icl/icl_povray_files.hpp"
-#include "datasets/reading/associated_row.hpp"
+#include "datasets/recording/formats/icl/icl_povray_files.hpp"
+#include "datasets/recording/reading/associated_row.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,6 +1,6 @@
 // The lists of a TUM folder: images and accelerometer.
-#include "datasets/formats/tum/tum_lists.hpp"
-#include "datasets/reading/image_list.hpp"
+#include "datasets/recording/formats/tum/tum_lists.hpp"
+#include "datasets/recording/reading/image_list.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,7 +1,7 @@
 // OBJ meshes.
 #include <algorithm>
 
-#include "core/mesh/obj_file.hpp"
+#include "core/base/mesh/obj_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

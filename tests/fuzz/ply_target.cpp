@@ -1,7 +1,7 @@
 // PLY meshes.
 #include <algorithm>
 
-#include "core/mesh/ply_file.hpp"
+#include "core/base/mesh/ply_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,6 +1,6 @@
 // ROS 1 bags: records, compressed chunks, and the messages in them.
-#include "datasets/formats/rosbag/bag_imu.hpp"
-#include "datasets/formats/rosbag/bag_topics.hpp"
+#include "datasets/recording/formats/rosbag/bag_imu.hpp"
+#include "datasets/recording/formats/rosbag/bag_topics.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,7 +1,7 @@
 // Files of BundleFusion and ScanNet: frames, and the poses alone.
 #include "core/base/error.hpp"
-#include "datasets/image_logs/file_part.hpp"
-#include "datasets/image_logs/sens_log.hpp"
+#include "datasets/recording/image_logs/file_part.hpp"
+#include "datasets/recording/image_logs/sens_log.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/targets.hpp"
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "datasets/formats/open_loris/transforms.hpp"
-#include "datasets/formats/record3d/record3d_metadata.hpp"
-#include "datasets/reading/sensor_yaml.hpp"
-#include "datasets/reading/text_matrix.hpp"
+#include "datasets/recording/formats/open_loris/transforms.hpp"
+#include "datasets/recording/formats/record3d/record3d_metadata.hpp"
+#include "datasets/recording/reading/sensor_yaml.hpp"
+#include "datasets/recording/reading/text_matrix.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,5 +1,5 @@
 // groundtruth.txt and imu.csv, which may lie beside the images of any format.
-#include "datasets/reading/side_files.hpp"
+#include "datasets/recording/reading/side_files.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/formats/stray/stray_tables.hpp"
+#include "datasets/recording/formats/stray/stray_tables.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"

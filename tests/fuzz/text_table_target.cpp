@@ -1,10 +1,10 @@
 // The scanner of text tables: fields, times and numbers, against properties and the C library.
-#include "core/io/text_table.hpp"
+#include "core/base/io/text_table.hpp"
 
 #include <cmath>
 #include <cstdlib>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

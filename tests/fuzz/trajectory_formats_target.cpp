@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/trajectory_files/trajectory_formats.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/trajectory/trajectory.hpp"
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -1,8 +1,8 @@
 // Archives of results, and the arrays in them.
 #include <cstddef>
 
-#include "eval/evo_results/npy_array.hpp"
-#include "eval/evo_results/zip_archive.hpp"
+#include "eval/report/evo_results/npy_array.hpp"
+#include "eval/report/evo_results/zip_archive.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"

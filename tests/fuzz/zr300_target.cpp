@@ -1,5 +1,5 @@
 // The lists of a ZR300 recording, all of them the same bytes.
-#include "datasets/formats/zr300/zr300_lists.hpp"
+#include "datasets/recording/formats/zr300/zr300_lists.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "eval/trajectory_error/ate_rpe.hpp"
+#include "eval/metrics/trajectory_error/ate_rpe.hpp"
 
 int main() {
   fusebench::Trajectory truth;

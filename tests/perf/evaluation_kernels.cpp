@@ -1,8 +1,8 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/mesh_error/mesh_metrics.hpp"
-#include "eval/trajectory_error/trajectory_evaluation.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/trajectory_error/trajectory_evaluation.hpp"
 #include "tests/bench/wandering_trajectory.hpp"
 #include "tests/perf/kernel_counts.hpp"
 #include "tests/support/test_meshes.hpp"

@@ -1,7 +1,7 @@
 #include <optional>
 
-#include "core/preprocessing/depth_gates.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/golden_frames.hpp"

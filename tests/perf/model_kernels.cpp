@@ -1,5 +1,5 @@
-#include "core/meshing/marching_cubes.hpp"
-#include "core/tsdf/band_blocks.hpp"
+#include "core/estimator/model/meshing/marching_cubes.hpp"
+#include "core/estimator/model/tsdf/band_blocks.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"

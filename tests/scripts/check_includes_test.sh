@@ -18,26 +18,26 @@ sound_tree() {
   rm -rf "${tree:?}"/*
   cat >"$tree/CMakeLists.txt" <<'TEXT'
 fusebench_room(core/base PUBLIC Eigen3::Eigen)
-fusebench_room(core/filter USES base)
+fusebench_room(core/estimator/filter USES base)
 fusebench_room(core USES base filter PRIVATE filter::library)
 fusebench_room(datasets/recording USES base)
-fusebench_room(datasets/formats/tum USES recording)
+fusebench_room(datasets/recording/formats/tum USES recording)
 fusebench_room(eval/metrics USES base)
 fusebench_room(eval/run
   USES base core recording tum metrics
   SOURCES ${build_info})
 TEXT
   write core/base/types.hpp fusebench '#pragma once\n#include <vector>'
-  write core/filter/iekf.cpp fusebench::filter '#include "core/base/types.hpp"'
-  write core/filter/iekf.hpp fusebench::filter '#pragma once'
-  write core/pipeline.cpp fusebench::core '#include "core/base/types.hpp"\n#include "core/filter/iekf.hpp"'
+  write core/estimator/filter/iekf.cpp fusebench::filter '#include "core/base/types.hpp"'
+  write core/estimator/filter/iekf.hpp fusebench::filter '#pragma once'
+  write core/pipeline.cpp fusebench::core '#include "core/base/types.hpp"\n#include "core/estimator/filter/iekf.hpp"'
   write core/pipeline.hpp fusebench::core '#pragma once'
   write datasets/recording/recording.hpp fusebench::recording '#include "core/base/types.hpp"'
-  write datasets/formats/tum/tum_rgbd.cpp fusebench::formats::tum '#include "datasets/recording/recording.hpp"'
-  write datasets/formats/tum/tum_rgbd.hpp fusebench::formats::tum '#pragma once'
+  write datasets/recording/formats/tum/tum_rgbd.cpp fusebench::formats::tum '#include "datasets/recording/recording.hpp"'
+  write datasets/recording/formats/tum/tum_rgbd.hpp fusebench::formats::tum '#pragma once'
   write eval/metrics/statistics.cpp fusebench::metrics '#include "core/base/types.hpp"'
   write eval/run/run.cpp fusebench::run '#include "core/base/types.hpp"\n#include "core/pipeline.hpp"
-#include "datasets/formats/tum/tum_rgbd.hpp"\n#include "datasets/recording/recording.hpp"
+#include "datasets/recording/formats/tum/tum_rgbd.hpp"\n#include "datasets/recording/recording.hpp"
 #include "eval/metrics/statistics.hpp"'
 }
 
@@ -65,45 +65,45 @@ if ! output=$("$check" "$tree"); then
   failures=1
 fi
 
-include core/filter/iekf.cpp '"datasets/recording/recording.hpp"'
-expect_refused core/filter/iekf.cpp:5 'core includes neither'
-include core/filter/iekf.cpp '<fusebench/eval/run/run.hpp>'
-expect_refused core/filter/iekf.cpp:5 'core includes neither'
+include core/estimator/filter/iekf.cpp '"datasets/recording/recording.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'core includes neither'
+include core/estimator/filter/iekf.cpp '<fusebench/eval/run/run.hpp>'
+expect_refused core/estimator/filter/iekf.cpp:5 'core includes neither'
 include datasets/recording/recording.hpp '"eval/run/run.hpp"'
 expect_refused datasets/recording/recording.hpp:5 'datasets does not include eval'
-include core/filter/iekf.cpp '"core/pipeline.hpp"'
-expect_refused core/filter/iekf.cpp:5 'core/filter does not use core'
-include core/filter/iekf.cpp '"core/types.hpp"'
-expect_refused core/filter/iekf.cpp:5 'core/filter does not use core'
-include core/filter/iekf.cpp '"core/gone/types.hpp"'
-expect_refused core/filter/iekf.cpp:5 'there is no such room'
+include core/estimator/filter/iekf.cpp '"core/pipeline.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'core/estimator/filter does not use core'
+include core/estimator/filter/iekf.cpp '"core/types.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'core/estimator/filter does not use core'
+include core/estimator/filter/iekf.cpp '"core/gone/types.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'there is no such room'
 include eval/run/run.cpp '"tests/support/scene.hpp"'
 expect_refused eval/run/run.cpp:9 'nothing outside tests'
-include core/filter/iekf.cpp '"types.hpp"'
-expect_refused core/filter/iekf.cpp:5 'start at the repository root'
-include core/filter/iekf.cpp '"../eval/run.hpp"'
-expect_refused core/filter/iekf.cpp:5 'start at the repository root'
+include core/estimator/filter/iekf.cpp '"types.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'start at the repository root'
+include core/estimator/filter/iekf.cpp '"../eval/run.hpp"'
+expect_refused core/estimator/filter/iekf.cpp:5 'start at the repository root'
 
 sed -i 's/(core\/filter USES base)/(core\/filter USES base recording)/' "$tree/CMakeLists.txt"
-expect_refused 'core/filter uses recording' 'only rooms before it'
+expect_refused 'core/estimator/filter uses recording' 'only rooms before it'
 sed -i 's/USES recording)/USES base recording)/' "$tree/CMakeLists.txt"
-expect_refused 'datasets/formats/tum uses base' 'what its files include'
+expect_refused 'datasets/recording/formats/tum uses base' 'what its files include'
 sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base recording)/' "$tree/CMakeLists.txt"
 include eval/metrics/statistics.cpp '"datasets/recording/recording.hpp"'
 expect_refused 'eval/metrics uses' 'metrics know neither'
 sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base filter)\nfusebench_room(eval\/tables USES core recording)/' "$tree/CMakeLists.txt"
-write eval/tables/table.cpp fusebench::tables '#include "core/pipeline.hpp"\n#include "datasets/recording/recording.hpp"'
-expect_refused 'eval/tables uses' 'use both recordings and the pipeline'
+write eval/compare/tables/table.cpp fusebench::tables '#include "core/pipeline.hpp"\n#include "datasets/recording/recording.hpp"'
+expect_refused 'eval/compare/tables uses' 'use both recordings and the pipeline'
 sed -i 's/eval\/metrics/eval\/filter/' "$tree/CMakeLists.txt"
 expect_refused CMakeLists.txt 'last names of rooms differ'
 sed -i '/eval\/metrics/d' "$tree/CMakeLists.txt"
 expect_refused eval/metrics/statistics.cpp 'every source lies in a room'
-write core/filter/state.cpp fusebench ''
-expect_refused core/filter/state.cpp:3 'the namespace of core/filter is fusebench::filter'
-for unit in a b c d e f g h i j k l m n o; do write "core/filter/$unit.cpp" fusebench::filter ''; done
-expect_refused core/filter 'at most 15 units'
-rm "$tree/core/filter/"*
-expect_refused core/filter 'every room has sources'
+write core/estimator/filter/state.cpp fusebench ''
+expect_refused core/estimator/filter/state.cpp:3 'the namespace of core/estimator/filter is fusebench::filter'
+for unit in a b c d e f g h i j k l m n o; do write "core/estimator/filter/$unit.cpp" fusebench::filter ''; done
+expect_refused core/estimator/filter 'at most 15 units'
+rm "$tree/core/estimator/filter/"*
+expect_refused core/estimator/filter 'every room has sources'
 
 rm -rf "${tree:?}"/*
 printf 'fusebench_room(core/base)\n' >"$tree/CMakeLists.txt"

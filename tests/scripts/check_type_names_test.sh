@@ -11,10 +11,10 @@ failures=0
 expect() {
   local output status=0
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{core,eval/engine}
+  mkdir -p "$tree"/{core,eval/suites/engine}
   printf 'namespace fusebench {\n\nstruct Options {\n  int a;\n};\nenum class Mode { on, off };\n\n}  // namespace fusebench\n' \
     >"$tree/core/first.hpp"
-  printf '%b\n' "$3" >"$tree/eval/engine/second.cpp"
+  printf '%b\n' "$3" >"$tree/eval/suites/engine/second.cpp"
   output=$("$check" "$tree" 2>&1) || status=$?
   if ((status != $1)) || [[ $output != *"$2"* ]]; then
     printf '%b\nexit code %d and "%s", expected %d and "%s"\n' "$3" "$status" "$output" "$1" "$2" >&2
@@ -23,7 +23,7 @@ expect() {
 }
 
 end='}  // namespace fusebench'
-expect 1 'eval/engine/second.cpp:2: fusebench::Options is defined at core/first.hpp:3 as well' \
+expect 1 'eval/suites/engine/second.cpp:2: fusebench::Options is defined at core/first.hpp:3 as well' \
   "namespace fusebench {\nstruct Options {\n  double a;\n};\n$end"
 expect 1 'fusebench::Options is defined at' "namespace fusebench {\nclass Options final : public Base {\n};\n$end"
 expect 1 'fusebench::Mode is defined at' "namespace fusebench {\nenum class Mode { a };\n$end"

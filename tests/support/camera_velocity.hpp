@@ -1,8 +1,8 @@
 // The camera's velocity, from what a report says of the IMU.
 #pragma once
 
-#include "core/health/frame_report.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/estimator/health/frame_report.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 
 namespace fusebench::testing {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "eval/run_files/found_runs.hpp"
-#include "eval/tables/table.hpp"
+#include "eval/compare/tables/table.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 
 namespace fusebench::testing {
 

@@ -8,7 +8,7 @@
 
 #include "core/config/groups/config_fwd.hpp"
 #include "core/config/groups/frame_config.hpp"
-#include "core/tsdf/band_blocks.hpp"
+#include "core/estimator/model/tsdf/band_blocks.hpp"
 
 namespace fusebench::testing {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/config/groups/config_fwd.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
 #include "tests/support/analytic_scene.hpp"
 
 namespace fusebench {

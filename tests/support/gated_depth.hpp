@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/config/groups/config_fwd.hpp"
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/estimator/preprocessing/depth_gates.hpp"
 
 namespace fusebench::testing {
 

@@ -1,7 +1,7 @@
 // A measurement of poses that are given.
 #pragma once
 
-#include "core/filter/iekf.hpp"
+#include "core/estimator/filter/iekf.hpp"
 
 namespace fusebench {
 

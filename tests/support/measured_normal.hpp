@@ -1,5 +1,5 @@
 // The normal of a measured surface at one pixel: what the association of eight
-// (core/measurement/patch_sums.hpp) is held against.
+// (core/estimator/measurement/patch_sums.hpp) is held against.
 #pragma once
 
 #include "core/base/types.hpp"

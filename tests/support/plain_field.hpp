@@ -1,12 +1,12 @@
-// The field of a model at one place in double precision: what the field at eight (core/tsdf/tsdf_lanes.hpp)
-// and the rays through it are held against.
+// The field of a model at one place in double precision: what the field at eight
+// (core/estimator/model/tsdf/tsdf_lanes.hpp) and the rays through it are held against.
 #pragma once
 
 #include <cmath>
 #include <optional>
 
-#include "core/tsdf/block_slots.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/model/tsdf/block_slots.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {
 

@@ -9,7 +9,7 @@
 
 #include "core/config/groups/frame_config.hpp"
 #include "core/config/groups/tsdf_config.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/config/groups/config_fwd.hpp"
-#include "core/raycast/raycast.hpp"
-#include "core/tsdf/tsdf_lanes.hpp"
+#include "core/estimator/model/raycast/raycast.hpp"
+#include "core/estimator/model/tsdf/tsdf_lanes.hpp"
 
 namespace fusebench::testing {
 

@@ -1,5 +1,5 @@
 // The residuals of the update, their Jacobians and the robust kernel for one pixel in double precision: what
-// the sums over eight pixels at a time (core/measurement/patch_sums.hpp) are held against.
+// the sums over eight pixels at a time (core/estimator/measurement/patch_sums.hpp) are held against.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/base/geometry.hpp"
 #include "core/base/image.hpp"
 #include "core/base/types.hpp"
-#include "core/patches/posed_camera.hpp"
+#include "core/estimator/patches/posed_camera.hpp"
 
 namespace fusebench::testing {
 

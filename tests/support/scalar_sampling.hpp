@@ -1,5 +1,5 @@
 // Grey levels between pixels for one place in double precision: what samples at eight places at a time
-// (core/simd/image_lanes.hpp) are held against.
+// (core/base/simd/image_lanes.hpp) are held against.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,7 @@ namespace fusebench::testing {
 
 struct TrackedSystem {
   std::vector<health::FrameOutcome> outcomes;
-  systems::Surface surface;
+  system::Surface surface;
 };
 
 inline config::Config config_of_variant(std::string_view name) {

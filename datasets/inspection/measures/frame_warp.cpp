@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 
 namespace fusebench::inspection::measures {

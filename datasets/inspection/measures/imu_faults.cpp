@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 
 namespace fusebench::inspection::measures {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/mesh/ply_file.hpp"
-#include "datasets/reading/time_unit.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "datasets/recording/reading/time_unit.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
 
 namespace fusebench::simulator::layouts {

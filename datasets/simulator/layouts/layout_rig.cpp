@@ -2,7 +2,7 @@
 
 #include "datasets/calibration/camera_presets.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
-#include "datasets/formats/icl/icl_conventions.hpp"
+#include "datasets/recording/formats/icl/icl_conventions.hpp"
 #include "datasets/simulator/layouts/layout.hpp"
 
 namespace fusebench::simulator::layouts {

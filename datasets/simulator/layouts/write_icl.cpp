@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "datasets/formats/icl/icl_conventions.hpp"
+#include "datasets/recording/formats/icl/icl_conventions.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
 
 namespace fusebench::simulator::layouts {

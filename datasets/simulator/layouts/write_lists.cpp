@@ -4,9 +4,9 @@
 
 #include <system_error>
 
-#include "core/filter/stamped_state.hpp"
-#include "core/io/whole_file.hpp"
-#include "datasets/exports/sensor_tables.hpp"
+#include "core/base/io/whole_file.hpp"
+#include "core/estimator/filter/stamped_state.hpp"
+#include "datasets/recording/exports/sensor_tables.hpp"
 
 namespace fusebench::simulator::layouts {
 

@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
 
 namespace fusebench::simulator::layouts {

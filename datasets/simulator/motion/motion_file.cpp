@@ -9,11 +9,11 @@
 #include <tuple>
 #include <utility>
 
-#include "core/io/input_file.hpp"
-#include "core/io/stamped_rows.hpp"
-#include "core/io/text_table.hpp"
-#include "core/trajectory/trajectory_file.hpp"
-#include "datasets/formats/icl/icl_conventions.hpp"
+#include "core/base/io/input_file.hpp"
+#include "core/base/io/stamped_rows.hpp"
+#include "core/base/io/text_table.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
+#include "datasets/recording/formats/icl/icl_conventions.hpp"
 
 namespace fusebench::simulator::motion {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "core/simd/lane_points.hpp"
+#include "core/base/simd/lane_points.hpp"
 #include "datasets/simulator/rays/ray_caster.hpp"
 #include "datasets/simulator/rays/ray_field.hpp"
 #include "datasets/simulator/render/triangle_planes.hpp"

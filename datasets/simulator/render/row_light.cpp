@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/simd/lane_points.hpp"
+#include "core/base/simd/lane_points.hpp"
 
 namespace fusebench::simulator::render {
 

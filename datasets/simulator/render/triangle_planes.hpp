@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
+#include "core/base/simd/lane_points.hpp"
 #include "core/base/types.hpp"
-#include "core/simd/lane_points.hpp"
 
 namespace fusebench::simulator::render {
 

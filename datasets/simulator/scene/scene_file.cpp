@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/mesh/mesh_file.hpp"
+#include "core/base/mesh/mesh_file.hpp"
 #include "datasets/simulator/texture/texture_patterns.hpp"
 
 namespace fusebench::simulator::scene {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/image.hpp"
-#include "core/simd/half_lanes.hpp"
+#include "core/base/simd/half_lanes.hpp"
 
 namespace fusebench::simulator::texture {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "eval/cli/console/console.hpp"
-#include "eval/engine/simulated_recordings.hpp"
 #include "eval/record/record.hpp"
+#include "eval/suites/engine/simulated_recordings.hpp"
 #include "eval/text/text_layout.hpp"
 
 namespace fusebench::cli::console {

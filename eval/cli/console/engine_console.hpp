@@ -9,8 +9,8 @@
 #include "core/base/error.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/stop_signals.hpp"
-#include "eval/engine/job_plan.hpp"
-#include "eval/engine/local_engine.hpp"
+#include "eval/suites/engine/job_plan.hpp"
+#include "eval/suites/engine/local_engine.hpp"
 
 namespace fusebench::cli::console {
 

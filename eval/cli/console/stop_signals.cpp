@@ -7,7 +7,7 @@
 #include <csignal>
 #include <string_view>
 
-#include "core/io/temporary_mark.hpp"
+#include "core/base/io/temporary_mark.hpp"
 
 namespace fusebench::cli::console {
 

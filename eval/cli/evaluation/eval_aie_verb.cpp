@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
-#include "eval/pose_intensity/pose_intensity.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
+#include "eval/record/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {
 

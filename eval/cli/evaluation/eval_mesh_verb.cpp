@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/staged_file.hpp"
-#include "core/mesh/mesh_file.hpp"
-#include "core/mesh/ply_file.hpp"
+#include "core/base/io/staged_file.hpp"
+#include "core/base/mesh/mesh_file.hpp"
+#include "core/base/mesh/ply_file.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/progress.hpp"
@@ -18,9 +18,9 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/evaluation/mesh_request.hpp"
-#include "eval/mesh_error/error_colors.hpp"
-#include "eval/mesh_error/mesh_evaluation.hpp"
-#include "eval/metric_reports/mesh_report.hpp"
+#include "eval/metrics/mesh_error/error_colors.hpp"
+#include "eval/metrics/mesh_error/mesh_evaluation.hpp"
+#include "eval/report/metric_reports/mesh_report.hpp"
 
 namespace fusebench::cli::evaluation {
 

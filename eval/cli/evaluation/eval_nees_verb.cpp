@@ -14,11 +14,11 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
-#include "eval/metric_reports/nees_report.hpp"
+#include "eval/metrics/trajectory_error/pose_nees.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
 #include "eval/page/figures.hpp"
+#include "eval/report/metric_reports/nees_report.hpp"
 #include "eval/text/text_file.hpp"
-#include "eval/trajectory_error/pose_nees.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {
 

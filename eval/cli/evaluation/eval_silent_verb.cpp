@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "core/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
+#include "eval/metrics/trajectory_error/silent_failures.hpp"
 #include "eval/text/json_text.hpp"
-#include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::cli::evaluation {
 

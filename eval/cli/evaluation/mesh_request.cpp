@@ -10,11 +10,11 @@
 #include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
-#include "eval/mesh_error/transform_file.hpp"
+#include "eval/metrics/mesh_error/transform_file.hpp"
+#include "eval/metrics/trajectory_error/pose_alignment.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
+#include "eval/metrics/trajectory_files/trajectory_pair.hpp"
 #include "eval/suites/recording_names.hpp"
-#include "eval/trajectory_error/pose_alignment.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
-#include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::cli::evaluation {
 

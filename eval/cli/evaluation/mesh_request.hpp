@@ -10,7 +10,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/console/reading_options.hpp"
-#include "eval/mesh_error/mesh_evaluation.hpp"
+#include "eval/metrics/mesh_error/mesh_evaluation.hpp"
 #include "eval/run/recording_views.hpp"
 
 namespace fusebench::cli::evaluation {

@@ -10,7 +10,6 @@
 #include "core/config/variants.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/open_recording.hpp"
-#include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/progress.hpp"
@@ -18,8 +17,9 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
-#include "eval/inspection_report/depth_camera_report.hpp"
-#include "eval/preparation/sensor_check.hpp"
+#include "eval/report/inspection_report/depth_camera_report.hpp"
+#include "eval/run/batch_estimation/calibration.hpp"
+#include "eval/run/preparation/sensor_check.hpp"
 #include "eval/run/run.hpp"
 
 namespace fusebench::cli::recordings {

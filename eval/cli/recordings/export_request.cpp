@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
-#include "datasets/exports/export_recording.hpp"
+#include "datasets/recording/exports/export_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/error.hpp"
-#include "datasets/exports/export_summary.hpp"
+#include "datasets/recording/exports/export_summary.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/cli/console/reading_options.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/exports/export_recording.hpp"
+#include "datasets/recording/exports/export_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/export_request.hpp"

@@ -9,7 +9,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/calibration_output.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
-#include "eval/preparation/preparation_report.hpp"
+#include "eval/run/preparation/preparation_report.hpp"
 #include "eval/run/run_specification.hpp"
 #include "eval/suites/recording_names.hpp"
 

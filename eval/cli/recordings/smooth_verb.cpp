@@ -5,14 +5,14 @@
 #include <memory>
 #include <utility>
 
+#include "core/base/io/staged_folder.hpp"
 #include "core/config/variants.hpp"
-#include "core/io/staged_folder.hpp"
-#include "eval/batch_estimation/smoothing.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/run/batch_estimation/smoothing.hpp"
 #include "eval/run/run.hpp"
 
 namespace fusebench::cli::recordings {

@@ -19,7 +19,7 @@
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/comparison_formats.hpp"
 #include "eval/compare/gates.hpp"
-#include "eval/run_files/found_runs.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::results {

@@ -9,16 +9,16 @@
 #include <string_view>
 
 #include "datasets/images/image_files.hpp"
-#include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/results/recorded_frames.hpp"
 #include "eval/cli/results/result_verbs.hpp"
+#include "eval/compare/aggregate/run_rows.hpp"
 #include "eval/page/figures.hpp"
+#include "eval/record/run_files/found_runs.hpp"
 #include "eval/report/results_page.hpp"
 #include "eval/report/sweep_sections.hpp"
-#include "eval/run_files/found_runs.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::results {

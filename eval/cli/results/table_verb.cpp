@@ -10,11 +10,11 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
-#include "eval/registry/run_metric.hpp"
-#include "eval/tables/paper_table.hpp"
-#include "eval/tables/pivot_table.hpp"
-#include "eval/tables/systems_table.hpp"
-#include "eval/tables/table.hpp"
+#include "eval/compare/tables/paper_table.hpp"
+#include "eval/compare/tables/pivot_table.hpp"
+#include "eval/compare/tables/systems_table.hpp"
+#include "eval/compare/tables/table.hpp"
+#include "eval/record/registry/run_metric.hpp"
 
 namespace fusebench::cli::results {
 

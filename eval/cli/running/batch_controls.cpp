@@ -6,9 +6,9 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/engine_console.hpp"
 #include "eval/cli/console/shared_options.hpp"
-#include "eval/engine/local_engine.hpp"
-#include "eval/engine/plan_preview.hpp"
 #include "eval/run/run_specification.hpp"
+#include "eval/suites/engine/local_engine.hpp"
+#include "eval/suites/engine/plan_preview.hpp"
 
 namespace fusebench::cli::running {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "eval/engine/engine_options.hpp"
-#include "eval/engine/job_outcome.hpp"
-#include "eval/engine/job_plan.hpp"
+#include "eval/suites/engine/engine_options.hpp"
+#include "eval/suites/engine/job_outcome.hpp"
+#include "eval/suites/engine/job_plan.hpp"
 #include "eval/suites/run_selection.hpp"
 
 namespace CLI {

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "core/base/parallel.hpp"
-#include "eval/aggregate/best.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/running/run_verbs.hpp"
-#include "eval/registry/run_metric.hpp"
+#include "eval/compare/aggregate/best.hpp"
+#include "eval/record/registry/run_metric.hpp"
 
 namespace fusebench::cli::running {
 

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "core/base/parallel.hpp"
-#include "eval/aggregate/long_table.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/compare/aggregate/long_table.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::running {

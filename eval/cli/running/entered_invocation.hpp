@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/base/error.hpp"
-#include "eval/engine/invocation.hpp"
+#include "eval/suites/engine/invocation.hpp"
 
 namespace fusebench::cli::running {
 

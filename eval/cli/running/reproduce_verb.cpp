@@ -14,11 +14,11 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/batch_controls.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/compare/reproduction/table1.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/page/page.hpp"
-#include "eval/paper_figures/paper_figures.hpp"
-#include "eval/reproduction/table1.hpp"
-#include "eval/run_files/found_runs.hpp"
+#include "eval/record/run_files/found_runs.hpp"
+#include "eval/report/paper_figures/paper_figures.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::running {

@@ -9,7 +9,7 @@
 #include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "eval/record/build_info.hpp"
-#include "eval/run_files/run_identity.hpp"
+#include "eval/record/run_files/run_identity.hpp"
 #include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::running {

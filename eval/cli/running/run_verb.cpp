@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/base/io/abandoned.hpp"
 #include "core/base/nearest_name.hpp"
-#include "core/io/abandoned.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/console/run_request.hpp"
@@ -15,9 +15,9 @@
 #include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/running/run_like.hpp"
 #include "eval/cli/running/run_verbs.hpp"
-#include "eval/external/external_program.hpp"
-#include "eval/external/system_name.hpp"
 #include "eval/record/clock_note.hpp"
+#include "eval/record/external/external_program.hpp"
+#include "eval/record/external/system_name.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/truth_contradiction.hpp"
 #include "eval/run/run.hpp"

@@ -10,7 +10,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
-#include "eval/engine/run_housekeeping.hpp"
+#include "eval/suites/engine/run_housekeeping.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::cli::running {

@@ -6,9 +6,9 @@
 #include "eval/cli/console/stop_signals.hpp"
 #include "eval/cli/running/entered_invocation.hpp"
 #include "eval/cli/running/run_verbs.hpp"
-#include "eval/engine/job_plan.hpp"
-#include "eval/engine/slurm_task.hpp"
 #include "eval/run/run_specification.hpp"
+#include "eval/suites/engine/job_plan.hpp"
+#include "eval/suites/engine/slurm_task.hpp"
 
 namespace fusebench::cli::running {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "eval/cli/console/console.hpp"
-#include "eval/study/criteria_json.hpp"
-#include "eval/study/summary_formats.hpp"
+#include "eval/compare/study/criteria_json.hpp"
+#include "eval/compare/study/summary_formats.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
 

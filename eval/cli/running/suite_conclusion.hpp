@@ -7,9 +7,9 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/running/suite_run.hpp"
-#include "eval/engine/job_outcome.hpp"
-#include "eval/engine/job_plan.hpp"
-#include "eval/study/criteria_check.hpp"
+#include "eval/compare/study/criteria_check.hpp"
+#include "eval/suites/engine/job_outcome.hpp"
+#include "eval/suites/engine/job_plan.hpp"
 #include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {

@@ -11,7 +11,7 @@
 #include "eval/cli/console/engine_console.hpp"
 #include "eval/cli/console/progress.hpp"
 #include "eval/cli/running/suite_conclusion.hpp"
-#include "eval/engine/simulated_recordings.hpp"
+#include "eval/suites/engine/simulated_recordings.hpp"
 #include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {

@@ -6,8 +6,8 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/running/batch_controls.hpp"
-#include "eval/engine/invocation.hpp"
-#include "eval/engine/slurm_engine.hpp"
+#include "eval/suites/engine/invocation.hpp"
+#include "eval/suites/engine/slurm_engine.hpp"
 
 namespace fusebench::cli::running {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "eval/trajectory_error/alignment.hpp"
+#include "eval/metrics/trajectory_error/alignment.hpp"
 
 namespace CLI {
 class App;

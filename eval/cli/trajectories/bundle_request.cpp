@@ -7,14 +7,14 @@
 #include <string_view>
 #include <utility>
 
-#include "core/trajectory/trajectory.hpp"
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
-#include "eval/reference_clock/clocked_errors.hpp"
+#include "eval/metrics/reference_clock/clocked_errors.hpp"
+#include "eval/metrics/trajectory_error/trajectory_error.hpp"
+#include "eval/metrics/trajectory_files/stamps.hpp"
 #include "eval/text/text_file.hpp"
-#include "eval/trajectory_error/trajectory_error.hpp"
-#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::cli::trajectories {
 

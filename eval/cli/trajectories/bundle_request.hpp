@@ -10,7 +10,7 @@
 #include "eval/cli/trajectories/alignment_options.hpp"
 #include "eval/cli/trajectories/plot_options.hpp"
 #include "eval/cli/trajectories/transcript.hpp"
-#include "eval/metric_reports/trajectory_listing.hpp"
+#include "eval/report/metric_reports/trajectory_listing.hpp"
 
 namespace fusebench::cli::trajectories {
 

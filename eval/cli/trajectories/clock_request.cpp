@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/trajectory/trajectory.hpp"
-#include "eval/trajectory_files/stamps.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "eval/metrics/trajectory_files/stamps.hpp"
 
 namespace fusebench::cli::trajectories {
 

@@ -5,8 +5,8 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
-#include "eval/reference_clock/clocked_errors.hpp"
-#include "eval/trajectory_error/trajectory_evaluation.hpp"
+#include "eval/metrics/reference_clock/clocked_errors.hpp"
+#include "eval/metrics/trajectory_error/trajectory_evaluation.hpp"
 
 namespace CLI {
 class App;

@@ -7,8 +7,8 @@
 #include "eval/cli/trajectories/plot_options.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/cli/trajectories/transcript.hpp"
-#include "eval/evo_results/result_table.hpp"
-#include "eval/metric_reports/results_plot.hpp"
+#include "eval/report/evo_results/result_table.hpp"
+#include "eval/report/metric_reports/results_plot.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::trajectories {

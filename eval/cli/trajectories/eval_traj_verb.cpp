@@ -11,7 +11,7 @@
 #include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
-#include "eval/metric_reports/trajectories_plot.hpp"
+#include "eval/report/metric_reports/trajectories_plot.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::trajectories {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/trajectory/trajectory.hpp"
-#include "core/trajectory/trajectory_extent.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory_extent.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
@@ -17,10 +17,10 @@
 #include "eval/cli/trajectories/option_effects.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
-#include "eval/evo_results/result_archive.hpp"
-#include "eval/metric_reports/trajectory_report.hpp"
+#include "eval/metrics/trajectory_files/stamps.hpp"
+#include "eval/report/evo_results/result_archive.hpp"
+#include "eval/report/metric_reports/trajectory_report.hpp"
 #include "eval/text/text_file.hpp"
-#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::cli::trajectories {
 

@@ -12,7 +12,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/base/printable.hpp"
 #include "eval/cli/trajectories/alignment_options.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::trajectories {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "eval/metric_reports/trajectory_report.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
-#include "eval/trajectory_files/trajectory_pair.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
+#include "eval/metrics/trajectory_files/trajectory_pair.hpp"
+#include "eval/report/metric_reports/trajectory_report.hpp"
 
 namespace fusebench::cli::trajectories {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "eval/trajectory_error/protocol.hpp"
+#include "eval/metrics/trajectory_error/protocol.hpp"
 
 namespace CLI {
 class App;

@@ -7,7 +7,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/cli/trajectories/transcript.hpp"
-#include "eval/metric_reports/plot_parts.hpp"
+#include "eval/report/metric_reports/plot_parts.hpp"
 
 namespace CLI {
 class App;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "eval/cli/trajectories/evo_spelling.hpp"
-#include "eval/trajectory_files/stamped_list.hpp"
+#include "eval/metrics/trajectory_files/stamped_list.hpp"
 
 namespace fusebench::cli::trajectories {
 

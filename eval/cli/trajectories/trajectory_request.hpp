@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/trajectory/trajectory_rows.hpp"
+#include "core/base/trajectory/trajectory_rows.hpp"
 #include "eval/cli/trajectories/alignment_options.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/cli/trajectories/plot_options.hpp"
 #include "eval/cli/trajectories/transcript.hpp"
-#include "eval/metric_reports/error_plot.hpp"
-#include "eval/trajectory_error/trajectory_evaluation.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
+#include "eval/metrics/trajectory_error/trajectory_evaluation.hpp"
+#include "eval/metrics/trajectory_files/trajectory_formats.hpp"
+#include "eval/report/metric_reports/error_plot.hpp"
 
 namespace fusebench::cli::trajectories {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/io/staged_file.hpp"
+#include "core/base/io/staged_file.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/progress.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/estimator/model/tsdf/tsdf_volume.hpp"
 #include "tests/bench/peers/contestant.hpp"
 
 namespace fusebench::peers {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/config/config.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 #include "eval/record/record_origin.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/our_pipeline.hpp"

@@ -4,14 +4,14 @@
 
 #include <opencv2/core/version.hpp>
 
+#include "core/baselines/opencv_odometry/frame_odometry.hpp"
 #include "core/config/groups/systems_config.hpp"
-#include "core/systems/opencv_odometry/frame_odometry.hpp"
 
 namespace fusebench::peers {
 
 namespace {
 
-using systems::opencv_odometry::FrameOdometry;
+using baselines::opencv_odometry::FrameOdometry;
 
 /// Each frame against the one before.
 class OpencvOdometry final : public Contestant {

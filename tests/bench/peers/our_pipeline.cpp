@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "core/meshing/marching_cubes.hpp"
+#include "core/estimator/model/meshing/marching_cubes.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/wall_stopwatch.hpp"
 #include "tests/support/camera_velocity.hpp"

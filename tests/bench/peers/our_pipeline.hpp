@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/estimator/preprocessing/rolling_shutter_compensation.hpp"
 #include "core/recording_estimator.hpp"
 #include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/contestant.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/filter/filter_state.hpp"
+#include "core/estimator/filter/filter_state.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 
 namespace fusebench {

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <limits>
 
+#include "core/base/io/fingerprint.hpp"
 #include "core/config/config.hpp"
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
-#include "core/io/fingerprint.hpp"
 
 namespace fusebench {
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/datasets/formats/tum/tum_folder.hpp"
+#include "tests/datasets/recording/formats/tum/tum_folder.hpp"
 
 namespace fusebench {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "datasets/inspection/measures/imu_faults.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
 

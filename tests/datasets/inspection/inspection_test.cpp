@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "datasets/open_recording.hpp"
-#include "tests/datasets/formats/tum/tum_folder.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
+#include "tests/datasets/recording/formats/tum/tum_folder.hpp"
 
 namespace fusebench::testing {
 

@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "datasets/formats/tum/tum_lists.hpp"
-#include "datasets/formats/zr300/zr300_lists.hpp"
-#include "datasets/reading/side_files.hpp"
+#include "datasets/recording/formats/tum/tum_lists.hpp"
+#include "datasets/recording/formats/zr300/zr300_lists.hpp"
+#include "datasets/recording/reading/side_files.hpp"
 #include "datasets/recording/state_truth.hpp"
 #include "tests/datasets/malformed_text.hpp"
 

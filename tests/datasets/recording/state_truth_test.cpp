@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/open_recording.hpp"
-#include "tests/datasets/formats/tum/tum_folder.hpp"
+#include "tests/datasets/recording/formats/tum/tum_folder.hpp"
 
 namespace fusebench {
 

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "core/mesh/ply_file.hpp"
+#include "core/base/mesh/ply_file.hpp"
 
 namespace fusebench::testing {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/scene/office.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "datasets/open_recording.hpp"
-#include "tests/datasets/formats/tum/tum_folder.hpp"
+#include "tests/datasets/recording/formats/tum/tum_folder.hpp"
 #include "tests/support/analytic_motion.hpp"
 
 namespace fusebench {

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
-#include "core/mesh/ply_file.hpp"
-#include "core/trajectory/trajectory_file.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/report/frame_pictures.hpp"
-#include "eval/run_charts/loop_charts.hpp"
-#include "eval/run_charts/profile_charts.hpp"
-#include "eval/run_charts/run_charts.hpp"
+#include "eval/report/run_charts/loop_charts.hpp"
+#include "eval/report/run_charts/profile_charts.hpp"
+#include "eval/report/run_charts/run_charts.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_meshes.hpp"

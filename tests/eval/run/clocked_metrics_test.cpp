@@ -1,13 +1,13 @@
 // Metrics of a run whose ground truth has a clock of its own.
 #include <gtest/gtest.h>
 
+#include "core/base/trajectory/trajectory.hpp"
 #include "core/config/config.hpp"
-#include "core/trajectory/trajectory.hpp"
 #include "datasets/recording/recording.hpp"
+#include "eval/metrics/trajectory_error/ate_rpe.hpp"
+#include "eval/metrics/trajectory_error/fitted_offset.hpp"
 #include "eval/run/run_evaluation.hpp"
-#include "eval/trajectory_error/ate_rpe.hpp"
-#include "eval/trajectory_error/fitted_offset.hpp"
-#include "tests/eval/reference_clock/moving_bodies.hpp"
+#include "tests/eval/metrics/reference_clock/moving_bodies.hpp"
 
 namespace fusebench {
 

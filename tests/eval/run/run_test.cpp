@@ -12,15 +12,15 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/base/io/text_table.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
+#include "core/base/trajectory/trajectory_file.hpp"
 #include "core/config/variants.hpp"
-#include "core/health/stage_times.hpp"
-#include "core/io/text_table.hpp"
-#include "core/mesh/ply_file.hpp"
-#include "core/trajectory/trajectory.hpp"
-#include "core/trajectory/trajectory_file.hpp"
-#include "eval/engine/local_engine.hpp"
+#include "core/estimator/health/stage_times.hpp"
 #include "eval/metrics/intensity_file.hpp"
-#include "tests/datasets/formats/tum/tum_folder.hpp"
+#include "eval/suites/engine/local_engine.hpp"
+#include "tests/datasets/recording/formats/tum/tum_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/trace_events.hpp"
 

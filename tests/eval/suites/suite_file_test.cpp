@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/config_access.hpp"
-#include "eval/engine/local_engine.hpp"
+#include "eval/suites/engine/local_engine.hpp"
 #include "eval/suites/suite_names.hpp"
 #include "tests/support/temporary_folder.hpp"
 

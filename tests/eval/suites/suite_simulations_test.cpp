@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/engine/job_plan.hpp"
-#include "eval/engine/simulated_recordings.hpp"
+#include "eval/suites/engine/job_plan.hpp"
+#include "eval/suites/engine/simulated_recordings.hpp"
 #include "eval/suites/suite_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 

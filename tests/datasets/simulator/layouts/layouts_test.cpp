@@ -7,11 +7,11 @@
 #include <iterator>
 #include <sstream>
 
+#include "core/base/io/stamped_rows.hpp"
+#include "core/base/mesh/ply_file.hpp"
+#include "core/base/trajectory/trajectory.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/io/stamped_rows.hpp"
-#include "core/mesh/ply_file.hpp"
-#include "core/prediction/imu_preintegration.hpp"
-#include "core/trajectory/trajectory.hpp"
+#include "core/estimator/prediction/imu_preintegration.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/simulation.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"

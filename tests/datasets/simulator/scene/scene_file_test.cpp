@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/mesh/ply_file.hpp"
+#include "core/base/mesh/ply_file.hpp"
 #include "datasets/simulator/render/renderer.hpp"
 #include "tests/datasets/simulator/simple_scenes.hpp"
 

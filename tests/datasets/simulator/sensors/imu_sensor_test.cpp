@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/prediction/imu_preintegration.hpp"
+#include "core/estimator/prediction/imu_preintegration.hpp"
 #include "datasets/simulator/motion/motion.hpp"
 
 namespace fusebench {
