@@ -15,8 +15,10 @@ namespace {
 
 constexpr std::size_t kFrames = 48;
 constexpr std::size_t kMinEdges = 1500;  // of all
-constexpr std::size_t kBlocks = 16;      // of frames whose errors may be common
-constexpr double kMinInside = 0.6;       // share of edges that a model must leave in the image
+constexpr std::size_t kPeriods = 16;     // of frames whose errors may be common
+constexpr int kCellsAcross = 4;          // of the image, in which errors may be common to all frames
+constexpr std::size_t kCells = kCellsAcross * kCellsAcross;
+constexpr double kMinInside = 0.6;  // share of edges that a model must leave in the image
 constexpr int kCoarseReach_px = 36;
 constexpr int kCoarseStep_px = 4;
 constexpr std::array kCoarseScales = {0.80, 0.84, 0.88, 0.92, 0.96, 1.0, 1.04, 1.08, 1.13, 1.18, 1.24};
@@ -34,6 +36,45 @@ constexpr int kNumbers = 8;
 constexpr int kOfCamera = 5;
 using Numbers = Eigen::Matrix<double, kNumbers, 1>;
 using Square = Eigen::Matrix<double, kNumbers, kNumbers>;
+
+/// Sums over the edges by period of the recording and cell of the image.
+template <typename T>
+using Grid = std::vector<std::vector<T>>;
+
+/// Covariance of the sum of a grid of vectors with mean zero, whose errors may be common to a period or to a
+/// cell: V_periods + V_cells - V_both (Cameron, Gelbach and Miller 2011), without negative eigenvalues.
+template <int N>
+Eigen::Matrix<double, N, N> clustered_covariance(const Grid<Eigen::Matrix<double, N, 1>>& grid) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const auto scatter = [](const std::vector<Vector>& sums) {
+    Matrix out = Matrix::Zero();
+    for (const Vector& sum : sums) out += sum * sum.transpose();
+    const auto count = static_cast<double>(sums.size());
+    return Matrix(out * (count / std::max(1.0, count - 1)));
+  };
+  std::vector<Vector> periods(grid.size(), Vector::Zero()), cells(kCells, Vector::Zero()), both;
+  for (std::size_t period = 0; period < grid.size(); ++period) {
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      periods[period] += grid[period][cell];
+      cells[cell] += grid[period][cell];
+      both.push_back(grid[period][cell]);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scatter(periods) + scatter(cells) - scatter(both));
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
+template <typename T>
+T sum_of(const Grid<T>& grid) {
+  T sum = grid.front().front();
+  sum.setZero();
+  for (const std::vector<T>& cells : grid) {
+    for (const T& cell : cells) sum += cell;
+  }
+  return sum;
+}
 
 class EdgeScore {
  public:
@@ -70,21 +111,20 @@ class EdgeScore {
     return sum / static_cast<double>(inside);
   }
 
-  /// Derivatives of the sum of strengths at the finest level across the edges, by blocks: of frames, or of
-  /// stretches of the edges of one frame where there are fewer frames than blocks.
-  [[nodiscard]] std::vector<Numbers> gradients(const Numbers& p, const Workers& workers) const {
-    const std::size_t parts = (kBlocks + frames_.size() - 1) / frames_.size();  // of a frame
-    const std::size_t length = std::max<std::size_t>(1, frames_.size() / kBlocks);
-    return workers.map_chunks<Numbers>(
-        parts * frames_.size(), length, [&](std::size_t begin, std::size_t end) {
-          Numbers sum = Numbers::Zero();
-          for (std::size_t k = begin; k < end; ++k) {
-            const FrameEdges& frame = *frames_[k / parts];
-            const std::size_t count = frame.edges.size(), part = k % parts;
-            for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
-              sum += gradient_of(frame, frame.edges[i], p);
-          }
-          return sum;
+  /// Derivatives of the sum of strengths at the finest level across the edges.
+  [[nodiscard]] Grid<Numbers> gradients(const Numbers& p, const Workers& workers) const {
+    return sums<Numbers>(workers, Numbers::Zero(), [&](const FrameEdges& frame, const DepthEdge& edge) {
+      return gradient_of(frame, edge, p);
+    });
+  }
+
+  /// Number of edges, and strength at the finest level at `to` less that at `from`.
+  [[nodiscard]] Grid<Eigen::Vector2d> gains(const Numbers& from, const Numbers& to,
+                                            const Workers& workers) const {
+    return sums<Eigen::Vector2d>(
+        workers, Eigen::Vector2d::Zero(), [&](const FrameEdges& frame, const DepthEdge& edge) {
+          const auto before = sample_of(frame, edge, from, 0), after = sample_of(frame, edge, to, 0);
+          return Eigen::Vector2d(1, (after ? after->value : 0) - (before ? before->value : 0));
         });
   }
 
@@ -126,6 +166,28 @@ class EdgeScore {
   }
 
  private:
+  template <typename T, typename OfEdge>
+  [[nodiscard]] Grid<T> sums(const Workers& workers, const T& zero, const OfEdge& of_edge) const {
+    const std::size_t length = (frames_.size() + kPeriods - 1) / kPeriods;
+    return workers.map_chunks<std::vector<T>>(frames_.size(), length,
+                                              [&](std::size_t begin, std::size_t end) {
+                                                std::vector<T> cells(kCells, zero);
+                                                for (std::size_t k = begin; k < end; ++k) {
+                                                  for (const DepthEdge& edge : frames_[k]->edges)
+                                                    cells[cell_of(edge)] += of_edge(*frames_[k], edge);
+                                                }
+                                                return cells;
+                                              });
+  }
+
+  [[nodiscard]] std::size_t cell_of(const DepthEdge& edge) const {
+    const auto at = [](float place_px, int size_px) {
+      return std::clamp(static_cast<int>(place_px) * kCellsAcross / size_px, 0, kCellsAcross - 1);
+    };
+    return static_cast<std::size_t>(at(edge.y_px, camera_.height_px) * kCellsAcross +
+                                    at(edge.x_px, camera_.width_px));
+  }
+
   /// Of the place of an edge along an axis. The model is linear in its numbers.
   [[nodiscard]] Numbers by_numbers(const FrameEdges& frame, const DepthEdge& edge, int axis) const {
     const double from_centre_px = axis == 0 ? edge.x_px - camera_.cx_px : edge.y_px - camera_.cy_px;
@@ -220,15 +282,9 @@ struct Quadratic {
   Square scatter;
 };
 
-Numbers sum_of(const std::vector<Numbers>& blocks) {
-  Numbers sum = Numbers::Zero();
-  for (const Numbers& block : blocks) sum += block;
-  return sum;
-}
-
 Quadratic quadratic_at(const EdgeScore& score, const Numbers& p, const Workers& workers) {
-  const std::vector<Numbers> blocks = score.gradients(p, workers);
-  Quadratic q{sum_of(blocks), Square::Zero(), Square::Zero()};
+  const Grid<Numbers> gradients = score.gradients(p, workers);
+  Quadratic q{sum_of(gradients), Square::Zero(), clustered_covariance(gradients)};
   const Numbers steps = score.steps();
   for (int i = 0; i < kNumbers; ++i) {
     Numbers before = p, after = p;
@@ -238,8 +294,6 @@ Quadratic quadratic_at(const EdgeScore& score, const Numbers& p, const Workers& 
         (sum_of(score.gradients(before, workers)) - sum_of(score.gradients(after, workers))) / (2 * steps[i]);
   }
   q.information = (0.5 * (q.information + q.information.transpose())).eval();
-  const auto count = static_cast<double>(blocks.size());
-  for (const Numbers& block : blocks) q.scatter += block * block.transpose() * (count / (count - 1));
   double factor = 0, observed = 0;
   for (int i = 0; i < kNumbers; ++i) {
     if (!(q.information(i, i) > 0)) continue;
@@ -290,6 +344,18 @@ Numbers unmoved(Numbers p) {
   return p;
 }
 
+/// Gain of strength by the move over its standard deviation.
+double gain_sigmas(const EdgeScore& score, const Numbers& moved, const Workers& workers) {
+  const Grid<Eigen::Vector2d> gains = score.gains(unmoved(moved), moved, workers);
+  const Eigen::Vector2d all = sum_of(gains);
+  Grid<Eigen::Matrix<double, 1, 1>> deviations(gains.size());
+  for (std::size_t period = 0; period < gains.size(); ++period) {
+    for (const Eigen::Vector2d& cell : gains[period])
+      deviations[period].emplace_back(cell[1] - cell[0] * all[1] / all[0]);
+  }
+  return all[1] / std::sqrt(std::max(1e-12, clustered_covariance(deviations)(0, 0)));
+}
+
 /// With what the scatter of frames does not show, as a displacement at the border, everywhere, and at the
 /// mean depth of the edges.
 DepthCameraSigma sigma_of(const Estimate& estimate, double mean_depth_m, const RegistrationFit& fit,
@@ -336,10 +402,7 @@ std::optional<RegistrationFit> fit_registration(const recording::Recording& reco
   fit.delay_frames = moved[kOfCamera];
   fit.strength_as_read = score(unmoved(moved), 0);
   fit.strength_moved = score(moved, 0);
-  for (const FrameEdges* frame : all) {
-    const EdgeScore alone({frame}, camera);
-    if (alone(moved, 0) > alone(unmoved(moved), 0)) fit.better_share += 1 / static_cast<double>(all.size());
-  }
+  fit.gain_sigmas = gain_sigmas(score, moved, workers);
   std::tie(fit.moved_px, fit.sigma_px) = score.movement_px(moved, estimate.covariance);
   fit.as_read = depth_camera_as_read(recording);
   fit.fitted = fitted_depth_camera(fit.model, camera, fit.as_read);

@@ -16,8 +16,8 @@
 // estimate maximises the strength of colour's edges under the edges of depth, a robust alignment: an edge
 // that has no counterpart within a few pixels has no influence. Newton's method from the best of a coarse
 // search. Covariance: sandwich estimator A^-1 J A^-1, A the derivative of the score, J its scatter between 16
-// blocks of frames. Wide priors (20 % of the focal length, 30 px, 30 mm) hold what the edges do not
-// determine.
+// periods of the recording and between 16 cells of the image: a camera that hardly moves sees the same edges
+// in all frames. Wide priors (20 % of the focal length, 30 px, 30 mm) hold what the edges do not determine.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ struct DepthCameraSigma {
 };
 
 struct RegistrationFit {
-  static constexpr double kMinBetterShare = 0.9;
+  static constexpr double kMinGainSigmas = 5;  ///< the best of some thousand moves gains up to 4 by chance
   static constexpr double kSignificant = 3;  ///< standard deviations
   /// What the scatter of frames does not show: edges of the depth of two Kinects, registered by their makers'
   /// and by a published calibration, lie 2 px beside those of colour, in all parts of the recordings alike.
@@ -63,7 +63,7 @@ struct RegistrationFit {
   /// where they are and moved by the model.
   double strength_as_read = 0;
   double strength_moved = 0;
-  double better_share = 0;           ///< of the frames: their own edges lie better when moved
+  double gain_sigmas = 0;            ///< the difference of the two over its standard deviation
   double moved_px = 0;               ///< by the model, rms over the edges
   double sigma_px = 0;               ///< of that movement, rms over the edges
   double delay_frames = 0;           ///< of depth, in intervals of frames
@@ -75,8 +75,8 @@ struct RegistrationFit {
   [[nodiscard]] bool is_significant() const {
     return moved_px > kSignificant * std::hypot(sigma_px, kCommonSigma_px);
   }
-  /// The movement is not the gain of a few frames.
-  [[nodiscard]] bool is_better_all_over() const { return better_share >= kMinBetterShare; }
+  /// The movement is not a chance alignment, or the gain of few frames or of a part of the image.
+  [[nodiscard]] bool is_better_all_over() const { return gain_sigmas >= kMinGainSigmas; }
 };
 
 /// Fits the model to frames all over the recording. Nothing if they have too few edges.

@@ -35,7 +35,7 @@ Json registration_json(const RegistrationFit& fit) {
           {"moved_px", fit.moved_px},
           {"sigma_px", fit.sigma_px},
           {"delay_frames", fit.delay_frames},
-          {"better_share", fit.better_share},
+          {"gain_sigmas", fit.gain_sigmas},
           {"strength_as_read", fit.strength_as_read},
           {"strength_moved", fit.strength_moved}};
 }
@@ -58,9 +58,9 @@ Result<void> check_determined(const RegistrationFit& fit, const recording::Recor
                 "the scatter of frames does not show)",
                 fit.moved_px, fit.sigma_px, RegistrationFit::kSignificant, RegistrationFit::kCommonSigma_px)
           : fmt::format(
-                "edges move {:.1f} px and fit better in only {:.0f} % of the frames (required: {:.0f} % or "
-                "more)",
-                fit.moved_px, 100 * fit.better_share, 100 * RegistrationFit::kMinBetterShare);
+                "edges move {:.1f} px and gain only {:.1f} standard deviations of edge strength (required: "
+                "{:g} or more)",
+                fit.moved_px, fit.gain_sigmas, RegistrationFit::kMinGainSigmas);
   return fail(
       ErrorCode::run_failed,
       fmt::format("recording '{}' does not determine a depth camera: {}", recording.name, reason),
@@ -89,12 +89,12 @@ std::string depth_camera_text(const RegistrationFit& fit, const recording::Recor
       "  fitted         {}\n"
       "  uncertainty    {:.1f} px, centre ({:.1f}, {:.1f}) px, ({:.1f}, {:.1f}) mm\n"
       "  edges move     {:.1f} +- {:.1f} px (rms)\n"
-      "  better         {:.0f} % of the frames; strength of colour's edges there {:.3f} -> {:.3f}\n"
+      "  strength       of colour's edges there {:.3f} -> {:.3f}: a gain of {:.1f} standard deviations\n"
       "  verdict        {}\n",
       recording.name, fit.edges, camera_text(fit.as_read), camera_text(fit.fitted),
       fit.fitted_sigma.focal_length_px, fit.fitted_sigma.centre_px.x(), fit.fitted_sigma.centre_px.y(),
       1e3 * fit.fitted_sigma.place_m.x(), 1e3 * fit.fitted_sigma.place_m.y(), fit.moved_px, fit.sigma_px,
-      100 * fit.better_share, fit.strength_as_read, fit.strength_moved, verdict);
+      fit.strength_as_read, fit.strength_moved, fit.gain_sigmas, verdict);
 }
 
 std::string depth_camera_json(const RegistrationFit& fit, const recording::Recording& recording) {

@@ -59,8 +59,8 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
   if (i.registration) {
     const inspection::measures::RegistrationFit& fit = *i.registration;
     depth.add("depth-colour misregistration",
-              fmt::format("{:.1f} px +- {:.1f}; edges fit better there in {:.0f} % of frames", fit.moved_px,
-                          fit.sigma_px, 100 * fit.better_share));
+              fmt::format("{:.1f} px +- {:.1f}; a gain of {:.1f} standard deviations of edge strength",
+                          fit.moved_px, fit.sigma_px, fit.gain_sigmas));
   }
   depth.append_to(all);
 }

@@ -16,7 +16,7 @@ struct MeasuredDepthCamera {
   inspection::measures::DepthCameraSigma sigma;  ///< of fitted
   double moved_px = 0;                           ///< by fitted in place of as_read, rms over edges of depth
   double sigma_px = 0;                           ///< of that
-  bool is_used = false;  ///< significant, and better in nine frames of ten; else as_read is kept
+  bool is_used = false;  ///< significant, with a gain that is no chance; else as_read is kept
 };
 
 [[nodiscard]] MeasuredDepthCamera measured_depth_camera(const inspection::measures::RegistrationFit& fit);

@@ -64,7 +64,7 @@ TEST(InspectionText, PutsErrorsFirst) {
 TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {
   const recording::Recording recording = clean_recording({.frames = 2});
   inspection::measures::RegistrationFit fit;
-  fit.better_share = 1;
+  fit.gain_sigmas = 20;
   fit.moved_px = 25;
   fit.sigma_px = 3;
   EXPECT_TRUE(check_determined(fit, recording).has_value());
@@ -77,8 +77,8 @@ TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {
   EXPECT_THAT(refused.error().message, HasSubstr("edges move 13.2 +- 17.3 px"));
   EXPECT_FALSE(nlohmann::json::parse(depth_camera_json(fit, recording)).at("determined").get<bool>());
   fit.sigma_px = 3;
-  fit.better_share = 0.67;
-  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("in only 67 % of the frames"));
+  fit.gain_sigmas = 2.7;
+  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("gain only 2.7 standard deviations"));
   EXPECT_THAT(depth_camera_text(fit, recording), HasSubstr("not determined"));
 }
 

@@ -88,7 +88,7 @@ TEST(DepthCamera, KeepsACalibrationThatIsNotContradicted) {
 
 TEST(DepthCamera, IsUsedIfItMovesEdgesByMoreThanTheirUncertainty) {
   inspection::measures::RegistrationFit fit;
-  fit.better_share = 1;
+  fit.gain_sigmas = 20;
   fit.moved_px = 24;
   fit.sigma_px = 0.5;
   EXPECT_TRUE(measured_depth_camera(fit).is_used);
@@ -98,7 +98,7 @@ TEST(DepthCamera, IsUsedIfItMovesEdgesByMoreThanTheirUncertainty) {
   fit.sigma_px = 10;
   EXPECT_FALSE(measured_depth_camera(fit).is_used);
   fit.sigma_px = 0.5;
-  fit.better_share = 0.7;
+  fit.gain_sigmas = 3;
   EXPECT_FALSE(measured_depth_camera(fit).is_used);
 }
 
