@@ -58,7 +58,9 @@ check 'detect lists its places' grep -qE '^[0-9.]+,[0-9.]+,[0-9]+,[1-9]' "$detec
 check 'detect says what its loops are worth' grep -q '"oracle_ate_m"' "$detect/record.json"
 check 'detect says what it found' grep -q ',accepted,' "$detect/loops.csv"
 check 'final changes no pose online' cmp "$off/trajectory.tum" "$one/trajectory.tum"
-check 'final finds what detect found' cmp "$detect/loops.csv" "$one/loops.csv"
+# Without the decision, which the optimisation can revise.
+candidates() { cut -d, -f1-18 "$1/loops.csv"; }
+check 'final finds the candidates of detect' test "$(candidates "$detect")" = "$(candidates "$one")"
 check 'as many final poses as online ones' test "$(wc -l <"$one/final.tum")" = "$(wc -l <"$one/trajectory.tum")"
 check 'the record has metrics of both' grep -q '"final_metrics"' "$one/record.json"
 check 'the summary says both' grep -q 'ATE .* (final .* cm)' final_1.log

@@ -84,14 +84,14 @@ expect_refused core/estimator/filter/iekf.cpp:5 'start at the repository root'
 include core/estimator/filter/iekf.cpp '"../eval/run.hpp"'
 expect_refused core/estimator/filter/iekf.cpp:5 'start at the repository root'
 
-sed -i 's/(core\/filter USES base)/(core\/filter USES base recording)/' "$tree/CMakeLists.txt"
+sed -i 's/(core\/estimator\/filter USES base)/(core\/estimator\/filter USES base recording)/' "$tree/CMakeLists.txt"
 expect_refused 'core/estimator/filter uses recording' 'only rooms before it'
 sed -i 's/USES recording)/USES base recording)/' "$tree/CMakeLists.txt"
 expect_refused 'datasets/recording/formats/tum uses base' 'what its files include'
 sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base recording)/' "$tree/CMakeLists.txt"
 include eval/metrics/statistics.cpp '"datasets/recording/recording.hpp"'
 expect_refused 'eval/metrics uses' 'metrics know neither'
-sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base filter)\nfusebench_room(eval\/tables USES core recording)/' "$tree/CMakeLists.txt"
+sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base filter)\nfusebench_room(eval\/compare\/tables USES core recording)/' "$tree/CMakeLists.txt"
 write eval/compare/tables/table.cpp fusebench::tables '#include "core/pipeline.hpp"\n#include "datasets/recording/recording.hpp"'
 expect_refused 'eval/compare/tables uses' 'use both recordings and the pipeline'
 sed -i 's/eval\/metrics/eval\/filter/' "$tree/CMakeLists.txt"

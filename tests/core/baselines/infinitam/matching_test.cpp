@@ -15,7 +15,7 @@
 
 namespace fusebench {
 
-using namespace systems;
+using namespace baselines;
 using namespace baselines::infinitam;
 using testing::small_camera;
 

@@ -12,7 +12,7 @@
 
 namespace fusebench {
 
-using namespace systems;
+using namespace baselines;
 using namespace baselines::elasticfusion;
 using testing::small_camera;
 
