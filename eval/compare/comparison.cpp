@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/toml_document.hpp"
 #include "eval/record/record.hpp"
 #include "eval/record/registry/run_numbers.hpp"
 #include "eval/record/run_files/record_files.hpp"
@@ -20,16 +19,6 @@
 namespace fusebench::compare {
 
 namespace {
-
-constexpr const char* kUpdate = "take NEW as the next BASE (docs/ci.md)";
-
-GateResult regression(std::string gate, std::string message) {
-  return {std::move(gate), GateVerdict::regression, true, std::move(message)};
-}
-
-GateResult note(std::string gate, std::string message) {
-  return {std::move(gate), GateVerdict::note, false, std::move(message)};
-}
 
 std::string status_text(const record::RunRecord& record) {
   return record.reason.empty() ? std::string(record::to_string(record.status))
@@ -81,77 +70,6 @@ void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateR
     const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
     results.push_back(metric_gate(metric, tolerance, base, fresh, gates));
   }
-}
-
-/// Options that nobody set, by their keys.
-std::map<std::string, std::string> defaults_of(const record::RunRecord& record) {
-  std::map<std::string, std::string> defaults;
-  for (const record::RecordedOption& option : record.config) {
-    if (!run_files::is_edit(option.origin)) defaults[option.key] = config::to_toml(option.value);
-  }
-  return defaults;
-}
-
-/// Options that only one of two versions has; of many their number.
-std::string differing_options_text(const std::vector<std::string>& differences) {
-  constexpr std::size_t kMostNamed = 8;
-  if (differences.size() <= kMostNamed) return fmt::format("options: {}", fmt::join(differences, ", "));
-  return fmt::format("options: {}, and {} more that only one of the two versions has",
-                     fmt::join(std::span(differences).first(kMostNamed), ", "),
-                     differences.size() - kMostNamed);
-}
-
-std::map<std::string, std::string> ignored_options_of(const record::RunRecord& record,
-                                                      const IgnoredOptions& ignored) {
-  std::map<std::string, std::string> options;
-  for (const record::RecordedOption& option : record.config)
-    if (is_ignored(ignored, option.key)) options[option.key] = config::to_toml(option.value);
-  return options;
-}
-
-/// Which of the ignored options differ.
-void add_ignored_options(const record::RunRecord& base, const record::RunRecord& fresh,
-                         const IgnoredOptions& ignored, std::vector<GateResult>& results) {
-  const auto before = ignored_options_of(base, ignored);
-  std::vector<std::string> differences;
-  for (const auto& [key, value] : ignored_options_of(fresh, ignored)) {
-    const auto there = before.find(key);
-    if (there != before.end() && there->second != value)
-      differences.push_back(fmt::format("{} = {} and {}", key, there->second, value));
-  }
-  if (!differences.empty())
-    results.push_back(note("options", fmt::format("ignored: {}", fmt::join(differences, ", "))));
-}
-
-void add_config_gates(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates,
-                      const IgnoredOptions& ignored, std::vector<GateResult>& results) {
-  auto before = defaults_of(base);
-  auto after = defaults_of(fresh);
-  for (auto* const options : {&before, &after})
-    std::erase_if(*options, [&](const auto& option) { return is_ignored(ignored, option.first); });
-  // A run that never began, or that was made elsewhere, has no configuration to compare.
-  if (before.empty() || after.empty()) return;
-  std::vector<std::string> changed;
-  std::vector<std::string> others;
-  for (const auto& [key, value] : before) {
-    const auto now = after.find(key);
-    if (now == after.end()) {
-      others.push_back(fmt::format("{} is gone", key));
-    } else if (now->second != value) {
-      changed.push_back(fmt::format("{}: {} -> {}", key, value, now->second));
-    }
-  }
-  for (const auto& [key, value] : after) {
-    if (!before.contains(key)) others.push_back(fmt::format("{} = {} is new", key, value));
-  }
-  if (!others.empty()) results.push_back(note("config", differing_options_text(others)));
-  if (changed.empty()) {
-    if (others.empty()) results.push_back({"config", GateVerdict::unchanged, false, {}});
-    return;
-  }
-  const std::string text =
-      fmt::format("a default changed: {}; if it was meant, {}", fmt::join(changed, ", "), kUpdate);
-  results.push_back(gates.changed_defaults_fail ? regression("config", text) : note("config", text));
 }
 
 /// How a repetition differs from the first run of its side; empty if it does not.
@@ -283,8 +201,7 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<run
   const bool repeats_exactly = run.runs.base.repeats_exactly && run.runs.fresh.repeats_exactly;
   const bool by_replicates = !repeats_exactly || has_replicates_to_gate(run.runs, gates);
   if (!by_replicates) run.gates.push_back(status_gate(base, fresh, gates));
-  add_ignored_options(base, fresh, ignored, run.gates);
-  add_config_gates(base, fresh, gates, ignored, run.gates);
+  for (GateResult& result : config_gates(base, fresh, gates, ignored)) run.gates.push_back(std::move(result));
   add_repetition_gates(run.runs, gates, run.gates);
   if (by_replicates) {
     for (GateResult& result : replicate_gates(run.runs, gates)) run.gates.push_back(std::move(result));
@@ -346,6 +263,14 @@ bool knows(const std::vector<run_files::FoundRun>& runs, const std::string& key)
 }
 
 }  // namespace
+
+GateResult regression(std::string gate, std::string message) {
+  return {std::move(gate), GateVerdict::regression, true, std::move(message)};
+}
+
+GateResult note(std::string gate, std::string message) {
+  return {std::move(gate), GateVerdict::note, false, std::move(message)};
+}
 
 std::string_view to_string(GateVerdict verdict) {
   switch (verdict) {

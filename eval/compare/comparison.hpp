@@ -42,6 +42,12 @@ struct GateResult {
   std::optional<registry::Better> better = {};  ///< of numbers
 };
 
+[[nodiscard]] GateResult regression(std::string gate, std::string message);  ///< fails
+[[nodiscard]] GateResult note(std::string gate, std::string message);        ///< does not fail
+
+/// What a regression that was intended asks for.
+inline constexpr const char* kUpdate = "take NEW as the next BASE (docs/ci.md)";
+
 struct ComparedRun {
   RunPair runs;
   std::vector<GateResult> gates;
@@ -88,6 +94,11 @@ void judge_change(GateResult& gate, const Gates& gates);
 /// see replicate_gates.cpp: in place of those of single runs. Without has_replicates_to_gate() none of them
 /// fails.
 [[nodiscard]] std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates);
+
+/// The gates of the configurations of a pair, see config_gates.cpp.
+[[nodiscard]] std::vector<GateResult> config_gates(const record::RunRecord& base,
+                                                   const record::RunRecord& fresh, const Gates& gates,
+                                                   const IgnoredOptions& ignored);
 
 /// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.
 [[nodiscard]] std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
