@@ -318,7 +318,7 @@ void Pipeline::refresh(health::StageTimes& stages) {
   if (anew) {
     now.reference.timestamp_ns = now.timestamp_ns;
     now.estimate = filter::cloned_as_reference(*now.estimate, compensated);
-    if (config_.patches.refresh == config::Refresh::anchor && !is_first)
+    if (!is_first)
       now.estimate = filter::with_anchor_noise(*std::move(now.estimate),
                                                deformed_update_.measurement().color_information());
   }

@@ -34,6 +34,7 @@ constexpr std::array kVariants = {
             "terms.patch_motion=own_translation", "dm"},
     Variant{"planar", "", "each patch is warped by one plane, as Bloesch et al. 2017 do",
             "terms.deformation=planar"},
+    Variant{"each-frame", "", "all patches are cut again in each fused frame", "patches.anchor_share=1"},
     Variant{"photometric-only", "", "no point-to-plane residuals", "terms.geometric_weight=0"},
     Variant{"geometric-only", "", "no photometric residuals", "terms.photometric_weight=0"},
     Variant{"single-iteration", "", "the plain extended Kalman filter: one iteration",
@@ -49,7 +50,7 @@ constexpr std::array kVariants = {
         "photometric.pixels_per_measurement=1 geometric.pixels_per_measurement=1 "
         "geometric.common_error_share=0 "
         "photometric.huber_sigmas=1e6 geometric.huber_sigmas=1e6 photometric.gain_sigma=0 "
-        "photometric.offset_sigma_grey=0 initialisation.imu_time_offset_sigma_s=0 "
+        "photometric.offset_sigma_grey=0 patches.anchor_share=1 initialisation.imu_time_offset_sigma_s=0 "
         "self_calibration.imu_rotation_sigma_rad=0 self_calibration.gyroscope_scale_sigma=0 "
         "self_calibration.accelerometer_scale_sigma=0 "
         "terms.motion_compensation=false terms.relocalisation=false"},

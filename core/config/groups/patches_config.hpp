@@ -13,12 +13,6 @@ constexpr auto option_choices(ReferenceSurface) {
                                     {"frame_ungated", ReferenceSurface::frame_ungated}});
 }
 
-/// From which frame the patches are cut.
-enum class Refresh { each, anchor };
-constexpr auto option_choices(Refresh) {
-  return choices<Refresh>({{"each", Refresh::each}, {"anchor", Refresh::anchor}});
-}
-
 /// When one of two pixels that project to the same position is occluded by the other.
 enum class ShrinkTest { depth_jump, any_collision };
 constexpr auto option_choices(ShrinkTest) {
@@ -38,7 +32,6 @@ struct PatchConfig {
   double max_mean_error = 30.0;
   double occlusion_distance_m = 0.1;
   ReferenceSurface reference_surface = ReferenceSurface::model;
-  Refresh refresh = Refresh::each;
   double anchor_share = 0.75;
   ShrinkTest shrink_test = ShrinkTest::depth_jump;
 
@@ -64,12 +57,11 @@ struct PatchConfig {
     v.choice("reference_surface", self.reference_surface,
              "depth and normals of a patch: from the model (Sec. 2.3), from the frame that it is cut from "
              "(Sec. 2.1.1), or from that frame with no gate on its depth");
-    v.choice("refresh", self.refresh,
-             "each: all patches are cut again from each fused frame; anchor: they keep the frame that "
-             "they were cut from (its pose is in the state) until they no longer agree with the image");
-    v.number("anchor_share", self.anchor_share, 0.0, 1.0,
-             "with refresh = anchor: patches are cut again when the correlations of the surviving patches "
-             "sum to less than this share of the number of patches");
+    v.number(
+        "anchor_share", self.anchor_share, 0.0, 1.0,
+        "patches keep the frame that they were cut from, the anchor, whose pose is in the state. All are "
+        "cut again when the correlations of the surviving patches sum to no more than this share of the "
+        "number of patches; 1: in each fused frame");
     v.choice("shrink_test", self.shrink_test,
              "of two pixels that project to the same position the farther one is dropped if it is clearly "
              "farther, or always (Sec. 2.1.1 as printed)");

@@ -27,12 +27,11 @@ void find_survivors(std::span<const patches::Patch> patches,
 
 bool needs_new_anchor(std::span<const measurement::PatchOutcome> outcomes,
                       const config::PatchConfig& config) {
-  if (config.refresh != config::Refresh::anchor || outcomes.empty()) return true;
   double agreement = 0;
   for (const measurement::PatchOutcome& outcome : outcomes) {
     if (survives(outcome, config)) agreement += std::max(0.0, outcome.correlation);
   }
-  return agreement < config.anchor_share * static_cast<double>(outcomes.size());
+  return agreement <= config.anchor_share * static_cast<double>(outcomes.size());
 }
 
 }  // namespace fusebench::acceptance

@@ -98,12 +98,10 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   return sum;
 }
 
-/// Estimates the common gain at the first linearisation. Patches of an anchor can be seconds old. Patches of
-/// the previous frame have its exposure within the standard deviations of the prior. Eq. 3 without brightness
-/// has no gain.
+/// Estimates the common gain at the first linearisation, since patches can be seconds old. Eq. 3 without
+/// brightness has no gain.
 void PatchMeasurement::find_common_gain() {
-  const bool has_gain = frame_->color_is_new && photometric_.gain_sigma > 0 &&
-                        config_.patches.refresh == config::Refresh::anchor;
+  const bool has_gain = frame_->color_is_new && photometric_.gain_sigma > 0;
   common_gain_ =
       has_gain ? measurement::common_gain(levels_.back().lanes, frame_->pyramid[levels_.size() - 1]) : 1;
   brightness_prior_ = BrightnessPrior(photometric_, *common_gain_);
@@ -125,10 +123,7 @@ std::optional<PatchRows> PatchMeasurement::rows_of(std::size_t patch,
 /// Variance factor of the errors that are independent between frames. A residual contains the noise of two
 /// images. The noise of an anchor's image is common to all frames compared with it and counts as an error of
 /// the anchor's pose (filter::with_anchor_noise()). Half of the variance remains.
-double PatchMeasurement::color_variance() const {
-  const double share = config_.patches.refresh == config::Refresh::anchor ? 0.5 : 1.0;
-  return share * photometric_variance_;
-}
+double PatchMeasurement::color_variance() const { return 0.5 * photometric_variance_; }
 
 Matrix6d PatchMeasurement::color_information() const {
   Matrix6d sum = Matrix6d::Zero();

@@ -51,7 +51,7 @@ struct DepthCameraSigma {
 
 struct RegistrationFit {
   static constexpr double kMinGainSigmas = 5;  ///< the best of some thousand moves gains up to 4 by chance
-  static constexpr double kSignificant = 3;  ///< standard deviations
+  static constexpr double kSignificant = 3;    ///< standard deviations
   /// What the scatter of frames does not show: edges of the depth of two Kinects, registered by their makers'
   /// and by a published calibration, lie 2 px beside those of colour, in all parts of the recordings alike.
   static constexpr double kCommonSigma_px = 1;

@@ -38,21 +38,20 @@ std::vector<PatchOutcome> outcomes_of(int count, double correlation) {
 
 TEST(SurvivingPatches, PatchesAreCutAnewWhenTheImageNoLongerAgreesWithThem) {
   PatchConfig config;
-  config.refresh = Refresh::anchor;
   config.anchor_share = 0.75;
   EXPECT_FALSE(needs_new_anchor(outcomes_of(20, 0.8), config));
   EXPECT_TRUE(needs_new_anchor(outcomes_of(20, 0.7), config));  // a blurred image
   std::vector<PatchOutcome> leaving = outcomes_of(20, 1.0);
-  for (std::size_t i = 0; i < 5; ++i) leaving[i].accepted = false;
+  for (std::size_t i = 0; i < 4; ++i) leaving[i].accepted = false;
   EXPECT_FALSE(needs_new_anchor(leaving, config));
-  leaving[5].mean_error_grey = config.max_mean_error + 1;
+  leaving[4].mean_error_grey = config.max_mean_error + 1;
   EXPECT_TRUE(needs_new_anchor(leaving, config));
   EXPECT_TRUE(needs_new_anchor({}, config));
 }
 
-TEST(SurvivingPatches, WithoutAnchorsPatchesAreCutFromEachFrame) {
+TEST(SurvivingPatches, AShareOfOneCutsThemFromEachFrame) {
   PatchConfig config;
-  config.refresh = Refresh::each;
+  config.anchor_share = 1;
   EXPECT_TRUE(needs_new_anchor(outcomes_of(20, 1.0), config));
 }
 

@@ -292,7 +292,7 @@ TEST(MotionCompensation, MakesFastMotionTrackableThroughARollingShutter) {
     double largest_angle_rad;
     double share_m;  ///< of the errors without compensation
   };
-  for (const Row& row : {Row{"full", 0.005, 0.003, 0.75}, Row{"no-imu", 0.015, 0.004, 1.5}}) {
+  for (const Row& row : {Row{"full", 0.005, 0.003, 0.75}, Row{"no-imu", 0.015, 0.005, 1.5}}) {
     Config with = variant_config(*find_variant(row.variant)).values();
     with.terms.motion_compensation = true;
     Config without = with;

@@ -78,7 +78,8 @@ TEST(DepthCameraReport, AFitWithinItsUncertaintyIsRefused) {
   EXPECT_FALSE(nlohmann::json::parse(depth_camera_json(fit, recording)).at("determined").get<bool>());
   fit.sigma_px = 3;
   fit.gain_sigmas = 2.7;
-  EXPECT_THAT(check_determined(fit, recording).error().message, HasSubstr("gain only 2.7 standard deviations"));
+  EXPECT_THAT(check_determined(fit, recording).error().message,
+              HasSubstr("gain only 2.7 standard deviations"));
   EXPECT_THAT(depth_camera_text(fit, recording), HasSubstr("not determined"));
 }
 
