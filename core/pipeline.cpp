@@ -14,7 +14,7 @@
 #include "core/estimator/measurement/patch_measurement.hpp"
 #include "core/estimator/prediction/initialisation.hpp"
 #include "core/estimator/prediction/motion_prior.hpp"
-#include "core/frames_without_update.hpp"
+#include "core/steps/frames_without_update.hpp"
 
 namespace fusebench::core {
 

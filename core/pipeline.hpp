@@ -13,9 +13,9 @@
 #include "core/estimator/filter/iekf.hpp"
 #include "core/estimator/health/frame_report.hpp"
 #include "core/estimator/patches/patches.hpp"
-#include "core/frame_preparation.hpp"
-#include "core/frame_update.hpp"
-#include "core/tracking_state.hpp"
+#include "core/steps/frame_preparation.hpp"
+#include "core/steps/frame_update.hpp"
+#include "core/steps/tracking_state.hpp"
 
 namespace fusebench::core {
 

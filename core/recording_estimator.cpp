@@ -11,9 +11,9 @@
 #include "core/estimator/filter/moved_state.hpp"
 #include "core/estimator/filter/pose_clones.hpp"
 #include "core/estimator/prediction/initialisation.hpp"
-#include "core/map_segments.hpp"
 #include "core/pipeline.hpp"
-#include "core/tracking_state.hpp"
+#include "core/steps/map_segments.hpp"
+#include "core/steps/tracking_state.hpp"
 
 namespace fusebench::core {
 

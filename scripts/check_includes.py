@@ -48,11 +48,11 @@ def read_rooms(text):
 
 
 def namespace_of(folder):
-    """The namespace of a room; names of base need no prefix, and the groups of options are part of config."""
+    """The namespace of a room. Names of base need no prefix; groups of options are part of config, steps of a frame of core."""
     if folder == "core/base":
         return "fusebench"
-    if folder == "core/config/groups":
-        return "fusebench::config"
+    if folder in ("core/config/groups", "core/steps"):
+        return "fusebench::" + folder.split("/")[-2]
     inside = [role for role in (*LAYERS, *ROLES) if folder.startswith(role + "/")]
     parts = folder[len(max(inside, key=len)) + 1:] if inside else folder
     return "::".join(["fusebench", *parts.split("/")])

@@ -1,4 +1,4 @@
-#include "core/frame_update.hpp"
+#include "core/steps/frame_update.hpp"
 
 #include <gtest/gtest.h>
 

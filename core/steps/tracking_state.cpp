@@ -1,4 +1,4 @@
-#include "core/tracking_state.hpp"
+#include "core/steps/tracking_state.hpp"
 
 #include <utility>
 

@@ -7,9 +7,9 @@
 #include "core/estimator/alignment/start_search.hpp"
 #include "core/estimator/filter/iekf.hpp"
 #include "core/estimator/measurement/patch_measurement.hpp"
-#include "core/frame_preparation.hpp"
-#include "core/repeated_images.hpp"
-#include "core/tracking_state.hpp"
+#include "core/steps/frame_preparation.hpp"
+#include "core/steps/repeated_images.hpp"
+#include "core/steps/tracking_state.hpp"
 
 namespace fusebench::core {
 

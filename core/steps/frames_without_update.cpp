@@ -1,4 +1,4 @@
-#include "core/frames_without_update.hpp"
+#include "core/steps/frames_without_update.hpp"
 
 #include <fmt/format.h>
 

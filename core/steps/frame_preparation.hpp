@@ -11,7 +11,7 @@
 #include "core/estimator/health/stage_times.hpp"
 #include "core/estimator/measurement/patch_measurement.hpp"
 #include "core/estimator/preprocessing/camera_motion.hpp"
-#include "core/repeated_images.hpp"
+#include "core/steps/repeated_images.hpp"
 
 namespace fusebench::core {
 

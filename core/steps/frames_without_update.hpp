@@ -7,7 +7,7 @@
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/estimator/health/frame_report.hpp"
-#include "core/tracking_state.hpp"
+#include "core/steps/tracking_state.hpp"
 
 namespace fusebench::core {
 

@@ -1,4 +1,4 @@
-#include "core/repeated_images.hpp"
+#include "core/steps/repeated_images.hpp"
 
 #include <gtest/gtest.h>
 

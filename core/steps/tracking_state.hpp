@@ -18,7 +18,7 @@
 #include "core/estimator/places/loops/pending_revisits.hpp"
 #include "core/estimator/places/relocalisation/relocalisation.hpp"
 #include "core/estimator/prediction/motion_prior.hpp"
-#include "core/repeated_images.hpp"
+#include "core/steps/repeated_images.hpp"
 
 namespace fusebench::core {
 

@@ -1,4 +1,4 @@
-#include "core/frame_preparation.hpp"
+#include "core/steps/frame_preparation.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "core/map_segments.hpp"
+#include "core/steps/map_segments.hpp"
 
 #include <algorithm>
 #include <utility>
