@@ -8,17 +8,20 @@
 namespace fusebench {
 inline namespace base {
 
-/// |I_k - I_{k-1}| of one pixel of a tracked patch at level 0, before robust weighting and brightness
-/// correction.
+/// |I_k - I_a| of one pixel of a tracked patch at level 0, before robust weighting and brightness correction;
+/// a: the frame that the patch was cut from.
 struct IntensityResidual {
-  std::uint32_t reference_pixel = 0;  ///< v * width + u in frame k-1; identifies the pixel in all variants
-  float difference_grey = 0;          ///< absolute, grey levels
-  bool accepted = false;              ///< its patch passed the chi-square gate
+  /// v * width + u of the pixel of frame k nearest to where it lands; identifies the pixel in all variants,
+  /// whose patches can be of different frames.
+  std::uint32_t pixel = 0;
+  float difference_grey = 0;  ///< absolute, grey levels
+  bool accepted = false;      ///< its patch passed the chi-square gate
 };
 
 /// Position in frame k to which a pixel is warped, and the reference intensity.
 struct WarpedPixel {
-  std::uint32_t patch = 0;  ///< number of its patch in the frame
+  std::uint32_t patch = 0;            ///< number of its patch in the frame
+  std::uint32_t reference_pixel = 0;  ///< v * width + u in frame a
   Eigen::Vector2f warped_px = Eigen::Vector2f::Zero();
   float reference_grey = 0;
   float observed_grey = 0;

@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "the file is written a
 namespace {
 
 constexpr std::string_view kMagic = "FBINTENS";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kFrameMark = 1;
 constexpr std::uint32_t kEndMark = 0;
 
@@ -50,7 +50,7 @@ Result<void> IntensityWriter::write_frame(std::int64_t timestamp_ns,
   write(stream_, kFrameMark);
   write(stream_, timestamp_ns);
   write(stream_, static_cast<std::uint32_t>(pixels.size()));
-  for (const IntensityResidual& pixel : pixels) write(stream_, pixel.reference_pixel);
+  for (const IntensityResidual& pixel : pixels) write(stream_, pixel.pixel);
   for (const IntensityResidual& pixel : pixels) {
     write(stream_, pixel.accepted ? pixel.difference_grey : -pixel.difference_grey);
   }

@@ -1,8 +1,8 @@
 // The intensity differences of a run, frame by frame, in a small binary file: what the common-pixel AIE
 // reads.
 //
-// Little-endian. Header: 8 bytes "FBINTENS", u32 version (1), u32 width_px, u32 height_px. Each frame: u32 1,
-// i64 timestamp_ns, u32 count, then count u32 (pixel in the previous frame, v * width + u), then count f32
+// Little-endian. Header: 8 bytes "FBINTENS", u32 version (2), u32 width_px, u32 height_px. Each frame: u32 1,
+// i64 timestamp_ns, u32 count, then count u32 (pixel of this frame, v * width + u), then count f32
 // (absolute difference in grey levels; the sign bit is set if the patch did not pass the gate). End: u32 0,
 // u64 number of frames.
 #pragma once

@@ -12,12 +12,9 @@ namespace {
 /// Sorted by key, the first occurrence of each.
 std::vector<IntensityResidual> unique_pixels(const std::vector<IntensityResidual>& pixels) {
   std::vector<IntensityResidual> result = pixels;
-  std::stable_sort(result.begin(), result.end(), [](const IntensityResidual& a, const IntensityResidual& b) {
-    return a.reference_pixel < b.reference_pixel;
-  });
-  const auto same = [](const IntensityResidual& a, const IntensityResidual& b) {
-    return a.reference_pixel == b.reference_pixel;
-  };
+  std::stable_sort(result.begin(), result.end(),
+                   [](const IntensityResidual& a, const IntensityResidual& b) { return a.pixel < b.pixel; });
+  const auto same = [](const IntensityResidual& a, const IntensityResidual& b) { return a.pixel == b.pixel; };
   result.erase(std::unique(result.begin(), result.end(), same), result.end());
   return result;
 }
@@ -78,15 +75,15 @@ void CommonIntensityAccumulator::add_frame(std::span<const std::vector<Intensity
   for (std::size_t run = 0; run < pixels.size(); ++run) {
     std::vector<std::uint32_t> keys;
     for (const IntensityResidual& pixel : pixels[run]) {
-      if (run == 0 || std::binary_search(common.begin(), common.end(), pixel.reference_pixel)) {
-        keys.push_back(pixel.reference_pixel);
+      if (run == 0 || std::binary_search(common.begin(), common.end(), pixel.pixel)) {
+        keys.push_back(pixel.pixel);
       }
     }
     common = std::move(keys);
   }
   for (std::size_t run = 0; run < pixels.size(); ++run) {
     std::erase_if(pixels[run], [&](const IntensityResidual& pixel) {
-      return !std::binary_search(common.begin(), common.end(), pixel.reference_pixel);
+      return !std::binary_search(common.begin(), common.end(), pixel.pixel);
     });
     sums_[run].add_frame(pixels[run]);
   }

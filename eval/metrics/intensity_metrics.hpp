@@ -1,7 +1,7 @@
 // AIE, the average intensity error of tracked patches, in grey levels (0-255).
 //
 // Definition. In frame k every tracked patch has pixels p of the previous frame that are still visible in
-// frame k; each has the difference |I_k(warp(p)) - I_{k-1}(p)| at the final pose: bilinear, 8-bit grey,
+// frame k; each has the difference |I_k(warp(p)) - I_a(p)| at the final pose: bilinear, 8-bit grey,
 // before robust weighting, without brightness correction, whether or not the patch passed the error gate. The
 // AIE of a frame is the mean over all these pixels of all its tracked patches (each pixel counts once per
 // patch); the AIE of a run is the mean over its frames. Frames without tracked pixels are left out and

@@ -122,7 +122,7 @@ class AWrittenRun(unittest.TestCase):
 
 
 class Intensities(unittest.TestCase):
-    WHOLE = (b"FBINTENS" + struct.pack("<III", 1, 4, 3) + struct.pack("<IqI", 1, 5_000_000_007, 3) +
+    WHOLE = (b"FBINTENS" + struct.pack("<III", 2, 4, 3) + struct.pack("<IqI", 1, 5_000_000_007, 3) +
              struct.pack("<III", 0, 11, 7) + struct.pack("<fff", 1.5, -2.5, -0.0) + struct.pack("<IqI", 1, 6, 0) +
              struct.pack("<IQ", 0, 2))
 

@@ -318,10 +318,18 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
       for_each_bit(simd::lane_bits(w.visible), [&](std::size_t lane) {
         const patches::PatchPixel& pixel = pixels[group * simd::kLanes + lane];
         const float reference = pixel.intensity;
-        tracked.intensity.push_back(
-            {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
-        tracked.warped.push_back(
-            {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
+        const auto nearest = [](float place_px, int size_px) {
+          return static_cast<std::uint32_t>(std::clamp(std::lround(place_px), 0L, long{size_px} - 1));
+        };
+        const std::uint32_t landing =
+            nearest(w.y[lane], rig_.camera.height_px) * static_cast<std::uint32_t>(rig_.camera.width_px) +
+            nearest(w.x[lane], rig_.camera.width_px);
+        tracked.intensity.push_back({landing, std::abs(observed[lane] - reference), outcomes_[p].accepted});
+        tracked.warped.push_back({static_cast<std::uint32_t>(p),
+                                  pixel.reference_pixel,
+                                  {w.x[lane], w.y[lane]},
+                                  reference,
+                                  observed[lane]});
       });
     }
   }

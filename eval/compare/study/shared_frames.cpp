@@ -24,9 +24,9 @@ class PixelMap {
   void fill(const std::vector<IntensityResidual>& pixels) {
     ++mark_;
     for (const IntensityResidual& pixel : pixels) {
-      if (marks_[pixel.reference_pixel] == mark_) continue;
-      marks_[pixel.reference_pixel] = mark_;
-      differences_[pixel.reference_pixel] = pixel.difference_grey;
+      if (marks_[pixel.pixel] == mark_) continue;
+      marks_[pixel.pixel] = mark_;
+      differences_[pixel.pixel] = pixel.difference_grey;
     }
   }
   [[nodiscard]] bool has(std::uint32_t pixel) const { return marks_[pixel] == mark_; }
@@ -48,7 +48,7 @@ SharedFrame shared_frame(const metrics::IntensityFrame& reference, PixelMap& ref
   frame.timestamp_ns = reference.timestamp_ns;
   std::vector<std::uint32_t> pixels;
   for (const IntensityResidual& pixel : variant.pixels) {
-    if (reference_map.has(pixel.reference_pixel)) pixels.push_back(pixel.reference_pixel);
+    if (reference_map.has(pixel.pixel)) pixels.push_back(pixel.pixel);
   }
   std::sort(pixels.begin(), pixels.end());
   pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());

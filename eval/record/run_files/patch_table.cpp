@@ -34,8 +34,8 @@ PatchTableFrame taken(std::size_t frame, const health::FrameReport& report, cons
     const auto width = static_cast<std::uint32_t>(grey.width);
     result.pixels.push_back({landing.patch,
                              residual.accepted,
-                             {static_cast<int>(residual.reference_pixel % width),
-                              static_cast<int>(residual.reference_pixel / width)},
+                             {static_cast<int>(landing.reference_pixel % width),
+                              static_cast<int>(landing.reference_pixel / width)},
                              landing.warped_px,
                              landing.reference_grey,
                              landing.observed_grey});

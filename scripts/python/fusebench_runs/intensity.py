@@ -16,7 +16,7 @@ class IntensityFrame(NamedTuple):
     """One frame; the three lists have one entry a pixel."""
 
     timestamp_ns: int
-    pixel: list  #: v * width + u of the pixel in the frame before
+    pixel: list  #: v * width + u of the pixel of this frame where it lands
     difference_grey: list  #: absolute, grey levels
     accepted: list  #: whether its patch passed the gate
 
@@ -62,8 +62,8 @@ def read_intensity(file):
         raise reader.wrong("is not a file of intensity differences")
     reader.at = 8
     version, width, height = reader.take("<III", "in its header")
-    if version != 1:
-        raise reader.wrong(f"has version {version} (this module reads 1)")
+    if version != 2:
+        raise reader.wrong(f"has version {version} (this module reads 2)")
     frames = []
     while True:
         where = f"after frame {len(frames)}"

@@ -111,7 +111,7 @@ TEST_F(IntensityFile, ReadsWhatWasWritten) {
   auto second = reader->next();
   ASSERT_TRUE(second && *second);
   ASSERT_EQ((*second)->pixels.size(), 2U);
-  EXPECT_EQ((*second)->pixels[0].reference_pixel, 640U * 480U - 1);
+  EXPECT_EQ((*second)->pixels[0].pixel, 640U * 480U - 1);
   EXPECT_EQ((*second)->pixels[0].difference_grey, 1.25F);
   EXPECT_TRUE((*second)->pixels[0].accepted);
   EXPECT_EQ((*second)->pixels[1].difference_grey, 0.0F);
