@@ -1,11 +1,11 @@
 // AIE, the average intensity error of tracked patches, in grey levels (0-255).
 //
-// Definition. In frame k every tracked patch has pixels p of the previous frame that are still visible in
-// frame k; each has the difference |I_k(warp(p)) - I_a(p)| at the final pose: bilinear, 8-bit grey,
-// before robust weighting, without brightness correction, whether or not the patch passed the error gate. The
-// AIE of a frame is the mean over all these pixels of all its tracked patches (each pixel counts once per
-// patch); the AIE of a run is the mean over its frames. Frames without tracked pixels are left out and
-// counted.
+// Definition. In frame k every tracked patch has pixels p of frame a, from which it was cut, that are still
+// visible in frame k. Each has the difference |I_k(warp(p)) - I_a(p)| at the final pose: bilinear, 8-bit
+// grey, before robust weighting, without brightness correction, whether or not the patch passed the error
+// gate. The AIE of a frame is the mean over all these pixels of all its tracked patches (each pixel counts
+// once per patch); the AIE of a run is the mean over its frames. Frames without tracked pixels are left out
+// and counted.
 //
 // A method can lower its AIE by dropping difficult pixels, so two more numbers are next to it: the same over
 // the patches that passed the gate (`accepted`), and the AIE on the pixels that all compared runs have in
@@ -65,7 +65,7 @@ class IntensityAccumulator {
 
 /// The AIE of several runs of one recording on the pixels that they share.
 ///
-/// In each frame the runs' pixels are intersected by their key in the previous frame (the first occurrence in
+/// In each frame the runs' pixels are intersected by their pixel of the frame (the first occurrence in
 /// a run counts, where its patches overlap). Frames in which nothing is shared are left out and counted.
 class CommonIntensityAccumulator {
  public:

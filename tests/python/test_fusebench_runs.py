@@ -147,7 +147,7 @@ class Intensities(unittest.TestCase):
             self.read(self.WHOLE + b"\0")
 
     def test_damage_is_refused(self):
-        for at, value, message in ((0, b"X", "not a file"), (8, b"\2", "version 2"), (20, b"\7", "damaged"),
+        for at, value, message in ((0, b"X", "not a file"), (8, b"\1", "version 1"), (20, b"\7", "damaged"),
                                    (40, b"\14", "outside the image")):
             with self.assertRaisesRegex(fusebench_runs.IntensityError, message):
                 self.read(self.WHOLE[:at] + value + self.WHOLE[at + 1:])

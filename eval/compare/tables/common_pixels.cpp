@@ -56,7 +56,7 @@ Result<std::vector<metrics::IntensitySummary>> common_pixel_error(
     auto frames = next_frames(*readers);
     if (!frames) return tl::unexpected(frames.error());
     if (frames->empty()) return sums.result();
-    // The first frame of a run has no previous frame, hence no pixels: it is not one that shares none.
+    // The first frame of a run has no anchor, hence no pixels: it is not one that shares none.
     if (first) continue;
     std::vector<std::vector<IntensityResidual>> pixels;
     for (metrics::IntensityFrame& frame : *frames) pixels.push_back(std::move(frame.pixels));
