@@ -20,7 +20,7 @@ FrameReport moved(double motion_px, std::uint32_t pixel) {
   report.timestamp_ns = 1'305'031'229'000'000'000 + static_cast<std::int64_t>(pixel);
   report.patch_motion_px = motion_px;
   report.pixels.intensity = {{pixel, 3.5F, true}};
-  report.pixels.warped = {{7, {12.25F, 8.5F}, 100.5F, 104.0F}};
+  report.pixels.warped = {{7, pixel, {12.25F, 8.5F}, 100.5F, 104.0F}};
   return report;
 }
 
