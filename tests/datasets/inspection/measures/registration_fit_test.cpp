@@ -132,6 +132,16 @@ TEST(RegistrationFit, LeavesRegisteredDepthAndDoesNotDependOnThreads) {
   EXPECT_EQ(one->model.baseline_m, two->model.baseline_m);
 }
 
+TEST(RegistrationFit, ASingleViewDoesNotBecomeCertainByRepetition) {
+  recording::Recording recording =
+      clean_recording({.camera = testing::small_camera(), .truth = false, .imu = false});
+  const auto moving = fit_registration(recording, Workers(2));
+  recording.load_frame = [whole = recording.load_frame](std::size_t) { return whole(0); };
+  const auto still = fit_registration(recording, Workers(2));
+  ASSERT_TRUE(moving && still);
+  EXPECT_GT(still->sigma_px, 1.5 * moving->sigma_px);
+}
+
 TEST(RegistrationFit, NeedsEdges) {
   recording::Recording recording =
       clean_recording({.camera = testing::small_camera(), .truth = false, .imu = false});
