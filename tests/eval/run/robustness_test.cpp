@@ -171,8 +171,8 @@ void expect_bridged(const RunResult& results, FrameHealth health) {
     SCOPED_TRACE(result.time_s);
     EXPECT_TRUE(result.lost());
     EXPECT_EQ(to_string(result.report.health), to_string(health));
-    // A patch that hardly has texture itself may fit an image that has none.
-    EXPECT_LE(result.report.patches_accepted, 1);
+    // Patches that hardly have texture themselves may fit an image that has none.
+    EXPECT_LE(result.report.patches_accepted, 12);
     EXPECT_EQ(result.report.model_blocks, before.report.model_blocks);
     EXPECT_GT(result.sigma_m, sigma_m);
     EXPECT_LT(result.error_m, before.error_m + 3 * result.sigma_m);
