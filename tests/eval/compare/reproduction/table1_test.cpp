@@ -145,9 +145,9 @@ TEST(Table1, WithoutDataEveryRowOfThePaperHasASpeedAndEachRunIsPlannedOnce) {
   options.only = {"recording=kt2_path_31", "recording=icl_slow_31"};
   EXPECT_EQ(plan_table1(*protocol, *suite, options, {.readings = {"default"}})->compared.size(), 1U);
   options.only.clear();
-  const auto unknown = plan_table1(*protocol, *suite, options, {.readings = {"kept"}});
+  const auto unknown = plan_table1(*protocol, *suite, options, {.readings = {"stric"}});
   ASSERT_FALSE(unknown.has_value());
-  testing::expect_contains(unknown.error().message, "no reading 'kept' (nearest: keep)");
+  testing::expect_contains(unknown.error().message, "no reading 'stric' (nearest: strict)");
 }
 
 TEST(Table1, ProtocolsRefuseWhatTheyDoNotKnow) {
