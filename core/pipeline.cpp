@@ -255,7 +255,7 @@ bool Pipeline::relocalise(const filter::GaussianState& prediction, health::Frame
   if (!found) return false;
   std::swap(now.reference, found->reference);
   if (!dark && track_again(found->prior, false, report)) {
-    report.pixels = {};  // the intensity error is defined against the previous frame
+    report.pixels = {};  // the intensity error is defined against the anchor
     return true;
   }
   if (found->by_depth) {

@@ -18,7 +18,7 @@ class FrameUpdate {
   /// The references must outlive it.
   FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers);
 
-  /// Updates the prior with the patches of the last frame, observed in the prepared frame. If the prediction
+  /// Updates the prior with the patches of the anchor, observed in the prepared frame. If the prediction
   /// is uncertain and the patches correlate badly, a second update starts from the coarsest level, and the
   /// better result is returned. thorough: starts from the coarsest level at once.
   [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior, const Tracking& last,

@@ -22,7 +22,7 @@
 
 namespace fusebench::metrics {
 
-/// A part of the error state (core/estimator/filter/filter_state.hpp) whose consistency is told apart.
+/// A part of the error state (core/estimator/filter/filter_state.hpp) with a NEES of its own.
 struct StatePart {
   std::string_view name;
   int offset = 0;

@@ -1,4 +1,4 @@
-// Patches: small squares of the last frame, with intensity, and depth and normals from the model
+// Patches: small squares of their anchor, with intensity, and depth and normals from the model
 // (Sec. 2.1.1, 2.3).
 #pragma once
 
@@ -58,7 +58,7 @@ struct ReferenceFrame {
   SE3 T_world_camera;
 };
 
-/// Position in the current frame of a patch of the last frame.
+/// Position of a patch in the current frame.
 struct TrackedCentre {
   Vector2d pixel_px = Vector2d::Zero();
   int age = 0;
