@@ -27,7 +27,7 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   const auto fit = measures::fit_registration(recording, workers);
   if (!fit) return;
   out.registration = fit;
-  if (!fit->is_significant() || !fit->is_better_all_over()) return;
+  if (!fit->is_determined()) return;
   // Points of one frame that are warped into another have the depth camera's focal length as well.
   for (Finding& finding : out.findings) {
     if (finding.code == "focal-length")

@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/inspection/measures/clustered_scatter.hpp"
+#include "datasets/inspection/measures/depth_edges.hpp"
+
 namespace fusebench::inspection::measures {
 
 namespace {
@@ -36,45 +39,6 @@ constexpr int kNumbers = 8;
 constexpr int kOfCamera = 5;
 using Numbers = Eigen::Matrix<double, kNumbers, 1>;
 using Square = Eigen::Matrix<double, kNumbers, kNumbers>;
-
-/// Sums over the edges by period of the recording and cell of the image.
-template <typename T>
-using Grid = std::vector<std::vector<T>>;
-
-/// Covariance of the sum of a grid of vectors with mean zero, whose errors may be common to a period or to a
-/// cell: V_periods + V_cells - V_both (Cameron, Gelbach and Miller 2011), without negative eigenvalues.
-template <int N>
-Eigen::Matrix<double, N, N> clustered_covariance(const Grid<Eigen::Matrix<double, N, 1>>& grid) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  const auto scatter = [](const std::vector<Vector>& sums) {
-    Matrix out = Matrix::Zero();
-    for (const Vector& sum : sums) out += sum * sum.transpose();
-    const auto count = static_cast<double>(sums.size());
-    return Matrix(out * (count / std::max(1.0, count - 1)));
-  };
-  std::vector<Vector> periods(grid.size(), Vector::Zero()), cells(kCells, Vector::Zero()), both;
-  for (std::size_t period = 0; period < grid.size(); ++period) {
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
-      periods[period] += grid[period][cell];
-      cells[cell] += grid[period][cell];
-      both.push_back(grid[period][cell]);
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scatter(periods) + scatter(cells) - scatter(both));
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         eigen.eigenvectors().transpose();
-}
-
-template <typename T>
-T sum_of(const Grid<T>& grid) {
-  T sum = grid.front().front();
-  sum.setZero();
-  for (const std::vector<T>& cells : grid) {
-    for (const T& cell : cells) sum += cell;
-  }
-  return sum;
-}
 
 class EdgeScore {
  public:
@@ -374,14 +338,6 @@ DepthCameraSigma sigma_of(const Estimate& estimate, double mean_depth_m, const R
 
 }  // namespace
 
-Vector2d RegistrationModel::move(const DepthEdge& edge, const PinholeCamera& camera) const {
-  const double x = camera.cx_px + scale * (edge.x_px - camera.cx_px) + shift_px.x() +
-                   camera.fx_px * baseline_m.x() / edge.depth_m;
-  const double y = camera.cy_px + scale * (edge.y_px - camera.cy_px) + shift_px.y() +
-                   camera.fy_px * baseline_m.y() / edge.depth_m;
-  return {x, y};
-}
-
 std::optional<RegistrationFit> fit_registration(const recording::Recording& recording,
                                                 const Workers& workers) {
   const std::vector<FrameEdges> frames = load_edges(recording, kFrames, workers);
@@ -413,30 +369,6 @@ std::optional<RegistrationFit> fit_registration(const recording::Recording& reco
 calibration::DepthCamera depth_camera_as_read(const recording::Recording& recording) {
   if (recording.calibration && recording.calibration->depth) return *recording.calibration->depth;
   return {recording.rig.camera, SE3{}};
-}
-
-calibration::DepthCamera fitted_depth_camera(const RegistrationModel& model, const PinholeCamera& color,
-                                             const calibration::DepthCamera& as_read) {
-  calibration::DepthCamera out = as_read;
-  out.pinhole.fx_px /= model.scale;
-  out.pinhole.fy_px /= model.scale;
-  // A shift of the moved image is one of the centre by the same angle.
-  out.pinhole.cx_px -= model.shift_px.x() / color.fx_px * out.pinhole.fx_px;
-  out.pinhole.cy_px -= model.shift_px.y() / color.fy_px * out.pinhole.fy_px;
-  out.T_color_depth.translation.x() = model.scale * out.T_color_depth.translation.x() + model.baseline_m.x();
-  out.T_color_depth.translation.y() = model.scale * out.T_color_depth.translation.y() + model.baseline_m.y();
-  return out;
-}
-
-RegistrationModel model_between(const calibration::DepthCamera& as_read,
-                                const calibration::DepthCamera& fitted, const PinholeCamera& color) {
-  RegistrationModel model;
-  model.scale = as_read.pinhole.fx_px / fitted.pinhole.fx_px;
-  model.shift_px = {(as_read.pinhole.cx_px - fitted.pinhole.cx_px) * color.fx_px / fitted.pinhole.fx_px,
-                    (as_read.pinhole.cy_px - fitted.pinhole.cy_px) * color.fy_px / fitted.pinhole.fy_px};
-  model.baseline_m =
-      (fitted.T_color_depth.translation - model.scale * as_read.T_color_depth.translation).head<2>();
-  return model;
 }
 
 }  // namespace fusebench::inspection::measures

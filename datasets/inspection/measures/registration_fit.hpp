@@ -27,20 +27,10 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
-#include "datasets/inspection/measures/depth_edges.hpp"
+#include "datasets/inspection/measures/registration_model.hpp"
 #include "datasets/recording/recording.hpp"
 
 namespace fusebench::inspection::measures {
-
-/// How depth images as they are read have to move to lie on colour: what parallel cameras do to each other
-/// that have other focal lengths and centres, and stand apart.
-struct RegistrationModel {
-  double scale = 1;           ///< focal length of colour over that of depth
-  Vector2d shift_px{0, 0};    ///< of the centre, or a small turn
-  Vector2d baseline_m{0, 0};  ///< the depth camera's place in the colour camera, x and y
-
-  [[nodiscard]] Vector2d move(const DepthEdge& edge, const PinholeCamera& camera) const;
-};
 
 /// Standard deviations of a fitted depth camera, with RegistrationFit::kCommonSigma_px.
 struct DepthCameraSigma {
@@ -75,24 +65,14 @@ struct RegistrationFit {
   [[nodiscard]] bool is_significant() const {
     return moved_px > kSignificant * std::hypot(sigma_px, kCommonSigma_px);
   }
-  /// The movement is not a chance alignment, or the gain of few frames or of a part of the image.
-  [[nodiscard]] bool is_better_all_over() const { return gain_sigmas >= kMinGainSigmas; }
+  /// The movement is significant, and is not a chance alignment or the gain of few frames or of a part of the
+  /// image.
+  [[nodiscard]] bool is_determined() const { return is_significant() && gain_sigmas >= kMinGainSigmas; }
 };
 
 /// Fits the model to frames all over the recording. Nothing if they have too few edges.
 [[nodiscard]] std::optional<RegistrationFit> fit_registration(const recording::Recording& recording,
                                                               const Workers& workers);
-
-/// The depth camera that the model asks for in place of the one with which depth was read. Exact for parallel
-/// cameras; small turns become a shift of the centre.
-[[nodiscard]] calibration::DepthCamera fitted_depth_camera(const RegistrationModel& model,
-                                                           const PinholeCamera& color,
-                                                           const calibration::DepthCamera& as_read);
-
-/// The inverse: the model by which `fitted` replaces `as_read`.
-[[nodiscard]] RegistrationModel model_between(const calibration::DepthCamera& as_read,
-                                              const calibration::DepthCamera& fitted,
-                                              const PinholeCamera& color);
 
 /// The depth camera by which depth was read: the calibration's; the colour camera, if depth counts as
 /// registered.

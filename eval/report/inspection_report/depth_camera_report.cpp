@@ -49,7 +49,7 @@ Result<RegistrationFit> estimate_depth_camera(const recording::Recording& record
 }
 
 Result<void> check_determined(const RegistrationFit& fit, const recording::Recording& recording) {
-  if (fit.is_significant() && fit.is_better_all_over()) return {};
+  if (fit.is_determined()) return {};
   const std::string reason =
       !fit.is_significant()
           ? fmt::format(

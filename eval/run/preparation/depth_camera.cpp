@@ -52,8 +52,7 @@ std::string values_text(const MeasuredDepthCamera& measured) {
 }  // namespace
 
 MeasuredDepthCamera measured_depth_camera(const measures::RegistrationFit& fit) {
-  return {fit.as_read,  fit.fitted,   fit.fitted_sigma,
-          fit.moved_px, fit.sigma_px, fit.is_significant() && fit.is_better_all_over()};
+  return {fit.as_read, fit.fitted, fit.fitted_sigma, fit.moved_px, fit.sigma_px, fit.is_determined()};
 }
 
 std::string to_line(const MeasuredDepthCamera& measured) {

@@ -89,7 +89,7 @@ TEST(RegistrationFit, FindsTheDepthCamera) {
   EXPECT_GT(fit->moved_px, 8);
   EXPECT_LT(fit->sigma_px, 1.5);
   EXPECT_TRUE(fit->is_significant());
-  EXPECT_TRUE(fit->is_better_all_over()) << fit->gain_sigmas;
+  EXPECT_TRUE(fit->is_determined()) << fit->gain_sigmas;
   EXPECT_GT(fit->strength_moved, 2 * fit->strength_as_read);
   const calibration::DepthCamera& fitted = fit->fitted;
   EXPECT_NEAR(fitted.pinhole.fx_px, 265, 3);
